@@ -12,26 +12,26 @@
 namespace adit::admin {
 namespace {
 
-using alarms::Acknowledged;
+using alarms::Acknowledgement;
 
-const Acknowledged kHeld{
+const Acknowledgement kHeld{
     .id = "report_held:7", .severity = alarms::Severity::Ask, .what = "Report 7 is held", .at = 100};
 
 class AcknowledgedFileTest : public testing::Test {
  protected:
   /// Writes in one process, which then ends. Returns the number of logged lines.
-  std::uint64_t keep(const std::vector<std::vector<Acknowledged>>& each) {
+  std::uint64_t keep(const std::vector<std::vector<Acknowledgement>>& each) {
     const std::uint64_t before = host::last_record_number();
     loop::Loop loop;
     loop::Writer writer(loop);
-    AcknowledgedFile file(folder_.path(), writer);
+    AcknowledgementFile file(folder_.path(), writer);
     for (const auto& all : each) file.keep(all);
     return wait_for(writer, before);
   }
-  std::vector<Acknowledged> read() {
+  std::vector<Acknowledgement> read() {
     loop::Loop loop;
     loop::Writer writer(loop);
-    return AcknowledgedFile(folder_.path(), writer).read();
+    return AcknowledgementFile(folder_.path(), writer).read();
   }
   static std::uint64_t wait_for(loop::Writer& writer, std::uint64_t before) {
     std::atomic<bool> done = false;
@@ -67,7 +67,7 @@ TEST_F(AcknowledgedFileTest, IsWrittenOnlyAfterAChange) {
   keep({{kHeld}});
   loop::Loop loop;
   loop::Writer writer(loop);
-  AcknowledgedFile file(folder_.path(), writer);
+  AcknowledgementFile file(folder_.path(), writer);
   ASSERT_EQ(file.read(), std::vector{kHeld});
   folder_.put("acknowledged.json", "untouched");
   file.keep({kHeld});
@@ -79,7 +79,7 @@ TEST_F(AcknowledgedFileTest, UnreadableFileIsKept) {
   ASSERT_EQ(mkfifo((folder_ / "acknowledged.json").c_str(), 0600), 0);
   loop::Loop loop;
   loop::Writer writer(loop);
-  AcknowledgedFile file(folder_.path(), writer);
+  AcknowledgementFile file(folder_.path(), writer);
   EXPECT_TRUE(file.read().empty());
   file.keep({kHeld});
   wait_for(writer, 0);

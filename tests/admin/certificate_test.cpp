@@ -13,7 +13,7 @@ namespace {
 
 using access::CertificateStatus;
 using testing::HasSubstr;
-using What = access::CertificateRequest::What;
+using Command = access::CertificateRequest::Command;
 using namespace std::chrono_literals;
 
 constexpr const char* kPem =
@@ -23,7 +23,7 @@ constexpr const char* kPem =
 class CertificateTest : public testing::Test {
  protected:
   CertificateTest() { std::filesystem::create_directory(run_ / Certificate::kStatusFolder); }
-  void tell(const CertificateStatus& status) {
+  void write_status(const CertificateStatus& status) {
     run_.put("certificate/status.json", codec::write_file(status));
     time_.pass(host::kFresh);
   }
@@ -38,10 +38,10 @@ class CertificateTest : public testing::Test {
     std::filesystem::remove(state_ / access::kCertificateRequestFile);
     state_.put(access::kCertificateFile, pem);
     const auto read = access::read_pem(pem);
-    tell({.nonce = request->nonce,
-          .refusal = refusal,
-          .fingerprint = read ? access::fingerprint_of(*read) : "",
-          .until = "2036-11-28"});
+    write_status({.nonce = request->nonce,
+                  .refusal = refusal,
+                  .fingerprint = read ? access::fingerprint_of(*read) : "",
+                  .until = "2036-11-28"});
     time_.pass(loop_, Certificate::kLook);
   }
   void expect(const std::string& outcome) {
@@ -71,10 +71,10 @@ class CertificateTest : public testing::Test {
 };
 
 TEST_F(CertificateTest, IsRequestedIfThereIsNone) {
-  tell({});
+  write_status({});
   EXPECT_THAT(why(), HasSubstr("being made"));
   certificate_.every_second();
-  EXPECT_EQ(asked()->what, What::Keep);
+  EXPECT_EQ(asked()->what, Command::Keep);
   EXPECT_EQ(asked()->address, "10.0.0.1");
   answer("");
   const auto view = certificate_.state();
@@ -86,7 +86,7 @@ TEST_F(CertificateTest, IsRequestedIfThereIsNone) {
 }
 
 TEST_F(CertificateTest, WaitsForTheAddressThatItNames) {
-  tell({});
+  write_status({});
   address_.clear();
   certificate_.every_second();
   EXPECT_FALSE(asked()) << "networkd has not set it yet";
@@ -96,7 +96,7 @@ TEST_F(CertificateTest, WaitsForTheAddressThatItNames) {
 }
 
 TEST_F(CertificateTest, IsMadeWithoutACable) {
-  tell({});
+  write_status({});
   address_.clear();
   time_.pass(loop_, Certificate::kAddressWithin);
   certificate_.every_second();
@@ -104,7 +104,7 @@ TEST_F(CertificateTest, IsMadeWithoutACable) {
 }
 
 TEST_F(CertificateTest, IsRequestedAgainAfterAWhile) {
-  tell({});
+  write_status({});
   certificate_.every_second();
   answer("openssl: no such file", "");
   EXPECT_EQ(why(), "openssl: no such file");
@@ -116,18 +116,18 @@ TEST_F(CertificateTest, IsRequestedAgainAfterAWhile) {
 }
 
 TEST_F(CertificateTest, OnDiskIsUsedByTheTlsServer) {
-  tell({.fingerprint = "of the one before"});
+  write_status({.fingerprint = "of the one before"});
   state_.put(access::kCertificateFile, kPem);  // by a take-over
   certificate_.every_second();
   EXPECT_EQ(certificate_.state().fingerprint, "");
-  EXPECT_EQ(asked()->what, What::Keep);
+  EXPECT_EQ(asked()->what, Command::Keep);
 }
 
 TEST_F(CertificateTest, NeedsAditCertificateAndTheTlsServer) {
   EXPECT_THAT(why(), HasSubstr("adit-certificate does not run here"));
   certificate_.every_second();
   EXPECT_FALSE(asked());
-  certificate_.take(kPem, done());
+  certificate_.replace(kPem, done());
   expect("adit-certificate does not run here");
   EXPECT_FALSE(has_uploaded());
   serves_tls_ = false;
@@ -136,12 +136,12 @@ TEST_F(CertificateTest, NeedsAditCertificateAndTheTlsServer) {
 }
 
 TEST_F(CertificateTest, IsReplacedByAnUploadedOne) {
-  tell({});
-  certificate_.take(kPem, done());
-  EXPECT_EQ(asked()->what, What::Take);
+  write_status({});
+  certificate_.replace(kPem, done());
+  EXPECT_EQ(asked()->what, Command::Take);
   EXPECT_TRUE(has_uploaded());
   EXPECT_FALSE(outcome_);
-  certificate_.take(kPem, [](const icd::Checked<void>& second) {
+  certificate_.replace(kPem, [](const icd::Checked<void>& second) {
     EXPECT_THAT(second.error().sentence, HasSubstr("another certificate"));
   });
   answer("");
@@ -149,24 +149,24 @@ TEST_F(CertificateTest, IsReplacedByAnUploadedOne) {
 }
 
 TEST_F(CertificateTest, IsNotReplacedByAWrongOne) {
-  tell({});
-  certificate_.take("rubbish", done());
+  write_status({});
+  certificate_.replace("rubbish", done());
   answer("there is no certificate in the file");
   expect("no certificate in the file");
   EXPECT_FALSE(has_uploaded());
 }
 
 TEST_F(CertificateTest, IsReplacedByANewOne) {
-  tell({});
+  write_status({});
   certificate_.make(done());
-  EXPECT_EQ(asked()->what, What::Make);
+  EXPECT_EQ(asked()->what, Command::Make);
   answer("");
   expect("");
 }
 
 TEST_F(CertificateTest, IsNotWaitedForForever) {
-  tell({});
-  certificate_.take(kPem, done());
+  write_status({});
+  certificate_.replace(kPem, done());
   time_.pass(loop_, Certificate::kTakenUpWithin + 1s);
   expect("did not read the request");
   EXPECT_FALSE(has_uploaded());

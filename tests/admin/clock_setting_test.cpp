@@ -92,8 +92,8 @@ TEST_F(ClockSettingTest, RequestsTheOperatorsTimeAsOfItsEntry) {
   ASSERT_TRUE(request);
   EXPECT_EQ(request->time, 1.8e9);
   EXPECT_EQ(request->source, Source::Operator);
-  EXPECT_EQ(clock::hindrance(*request, std::chrono::duration<double>(loop_.now().time_since_epoch()).count(),
-                             status),
+  EXPECT_EQ(clock::refusal_reason(
+                *request, std::chrono::duration<double>(loop_.now().time_since_epoch()).count(), status),
             "");
   write_status({.nonce = request->nonce, .refusal = "", .source = Source::Operator});
   EXPECT_EQ(setting_.is_set(), true);

@@ -97,7 +97,7 @@ TEST_F(NetworkChangeTest, ModeIsConfirmedAtAnyAddressButTheOld) {
 }
 
 TEST_F(NetworkChangeTest, HidesTheLastChangeWhileAnotherIsPending) {
-  status.ended = network::Ended::Confirmed;
+  status.ended = network::ChangeOutcome::Confirmed;
   write_status();
   EXPECT_EQ(change.state().last, "confirmed");
   wait(numbers("192.168.8.11/24"));

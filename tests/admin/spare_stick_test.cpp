@@ -75,7 +75,7 @@ TEST_F(SpareStickTest, WritesTheFileBeforeTheRequest) {
   write_status({});
   ASSERT_TRUE(stick_.write(kName, "sealed"));
   EXPECT_EQ(host::read_file(state_ / spare::kForStickFile), "sealed");
-  EXPECT_EQ(asked()->what, spare::StickRequest::What::Write);
+  EXPECT_EQ(asked()->what, spare::StickRequest::Command::Write);
   EXPECT_EQ(asked()->name, kName);
   EXPECT_EQ(stick_.view()->doing, "writing");
   EXPECT_THAT(why(stick_.request_import(kName)), HasSubstr("the box is already writing"));

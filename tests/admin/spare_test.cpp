@@ -27,9 +27,9 @@ class Box {
   void restart() {
     restarts = 0;
     spare_.emplace(loop_, workers_, takeover_, state_.path(), stick_.path(), trouble,
-                   Spare::Asked{.content = [] { return content(); },
-                                .is_time_set = [this] { return is_time_set; },
-                                .restart = [this] { ++restarts; }});
+                   Spare::Callbacks{.content = [] { return content(); },
+                                    .is_time_set = [this] { return is_time_set; },
+                                    .restart = [this] { ++restarts; }});
   }
   icd::Checked<std::string> exported() {
     std::optional<icd::Checked<std::string>> file;
@@ -103,7 +103,7 @@ std::string why(const icd::Checked<void>& done) {
 TEST(SpareBox, ExportsOnlyOnStandby) {
   Box box;
   EXPECT_THAT(box.exported().error().sentence, HasSubstr("not on standby"));
-  ASSERT_TRUE(box.spare().stand_by());
+  ASSERT_TRUE(box.spare().enter_standby());
   EXPECT_EQ(box.turned().restarts, 1);
   EXPECT_EQ(box.spare().standby(), "") << "standby waits for requests in flight";
   box.restart();
@@ -114,7 +114,7 @@ TEST(SpareBox, ExportsOnlyOnStandby) {
 
 TEST(SpareBox, StaysOnStandbyUntilResumed) {
   Box box;
-  ASSERT_TRUE(box.spare().stand_by());
+  ASSERT_TRUE(box.spare().enter_standby());
   for (int life = 0; life < 3; ++life) {
     box.restart();
     EXPECT_NE(box.spare().standby(), "");
@@ -127,19 +127,19 @@ TEST(SpareBox, StaysOnStandbyUntilResumed) {
 
 TEST(SpareBox, EachStandbyHasItsOwnCode) {
   Box box;
-  ASSERT_TRUE(box.spare().stand_by());
+  ASSERT_TRUE(box.spare().enter_standby());
   box.restart();
   const std::string first = box.spare().state().code;
   ASSERT_TRUE(box.spare().resume());
   box.restart();
-  ASSERT_TRUE(box.spare().stand_by());
+  ASSERT_TRUE(box.spare().enter_standby());
   box.restart();
   EXPECT_NE(box.spare().state().code, first);
 }
 
 TEST(SpareBox, ImportsTheExportThatItsCodeOpens) {
   Box first, second;
-  ASSERT_TRUE(first.spare().stand_by());
+  ASSERT_TRUE(first.spare().enter_standby());
   first.restart();
   const auto file = first.exported();
   ASSERT_TRUE(file);
@@ -156,14 +156,14 @@ TEST(SpareBox, ImportsTheExportThatItsCodeOpens) {
   EXPECT_EQ(second.turned().restarts, 0) << "the box restarted too early";
   ASSERT_TRUE(second.spare().take_over());
   EXPECT_EQ(second.turned().restarts, 1);
-  EXPECT_EQ(why(second.spare().stand_by()), "this box is taking over just now");
+  EXPECT_EQ(why(second.spare().enter_standby()), "this box is taking over just now");
 }
 
 TEST(SpareBox, ExportsToTheStickOnlyOnStandby) {
   Box box;
   box.write_status({});
   EXPECT_THAT(why(box.to_stick()), HasSubstr("not on standby"));
-  ASSERT_TRUE(box.spare().stand_by());
+  ASSERT_TRUE(box.spare().enter_standby());
   box.restart();
   ASSERT_TRUE(box.to_stick());
   EXPECT_THAT(box.stick_request_file().first,
@@ -176,21 +176,21 @@ TEST(SpareBox, ExportsToTheStickOnlyOnStandby) {
 
 TEST(SpareBox, ImportsFromTheStickLikeAnUpload) {
   Box first, second;
-  ASSERT_TRUE(first.spare().stand_by());
+  ASSERT_TRUE(first.spare().enter_standby());
   first.restart();
   second.write_status({.exports = {"a.adit-spare"}});
-  ASSERT_TRUE(second.spare().take_from_stick("a.adit-spare"));
+  ASSERT_TRUE(second.spare().import_from_stick("a.adit-spare"));
   EXPECT_FALSE(second.spare().state().asks_code);
   second.read_from_stick(*first.exported());
   EXPECT_TRUE(second.spare().state().asks_code);
   ASSERT_TRUE(second.opened(first.spare().state().code));
   ASSERT_TRUE(second.spare().take_over());
-  EXPECT_EQ(why(second.spare().take_from_stick("a.adit-spare")), "this box is taking over just now");
+  EXPECT_EQ(why(second.spare().import_from_stick("a.adit-spare")), "this box is taking over just now");
 }
 
 TEST(SpareBox, DoesNotTakeOverFromItself) {
   Box box;
-  ASSERT_TRUE(box.spare().stand_by());
+  ASSERT_TRUE(box.spare().enter_standby());
   box.restart();
   ASSERT_TRUE(box.spare().import_file(*box.exported()));
   EXPECT_THAT(why(box.opened(box.spare().state().code)), HasSubstr("this box made the export itself"));
@@ -208,7 +208,7 @@ TEST(SpareBox, StaysOnStandbyIfTakeOverFails) {
 TEST(SpareBox, HidesExportsOfAnEarlierStandby) {
   Box box;
   box.write_status({});
-  ASSERT_TRUE(box.spare().stand_by());
+  ASSERT_TRUE(box.spare().enter_standby());
   box.restart();
   ASSERT_TRUE(box.to_stick());
   const std::string file = box.stick_request_file().first;
@@ -224,7 +224,7 @@ TEST(SpareBox, HidesExportsOfAnEarlierStandby) {
 }
 
 /// The export, opened with its code.
-spare::About about_of(Box& box) {
+spare::ExportInfo about_of(Box& box) {
   const auto text = spare::unseal(*box.exported(), *spare::code_in(box.spare().state().code));
   return spare::read(*text)->about;
 }
@@ -232,10 +232,10 @@ spare::About about_of(Box& box) {
 TEST(SpareBox, CountsStandbysAndRecordsTheirTimes) {
   Box box;
   for (const std::int64_t count : {1, 2}) {
-    ASSERT_TRUE(box.spare().stand_by());
+    ASSERT_TRUE(box.spare().enter_standby());
     const double stamp = box.stamp();
     box.restart();
-    const spare::About about = about_of(box);
+    const spare::ExportInfo about = about_of(box);
     EXPECT_EQ(about.rest_count, count);
     EXPECT_NEAR(about.stamp, stamp, 1) << "the stamp of standby, not of the export";
     EXPECT_EQ(about.told_at, std::nullopt) << "the time of day was never set";
@@ -243,7 +243,7 @@ TEST(SpareBox, CountsStandbysAndRecordsTheirTimes) {
     box.restart();
   }
   box.is_time_set = true;
-  ASSERT_TRUE(box.spare().stand_by());
+  ASSERT_TRUE(box.spare().enter_standby());
   box.is_time_set = false;  // since then
   box.restart();
   EXPECT_EQ(about_of(box).told_at, about_of(box).at);
@@ -251,7 +251,7 @@ TEST(SpareBox, CountsStandbysAndRecordsTheirTimes) {
 
 TEST(SpareBox, ResumesWithADamagedButNotAnUnreadableFile) {
   Box box;
-  ASSERT_TRUE(box.spare().stand_by());
+  ASSERT_TRUE(box.spare().enter_standby());
   const std::filesystem::path file = box.state() / SpareFile::kName, elsewhere = box.state() / "elsewhere";
   std::filesystem::rename(file, elsewhere);
   std::filesystem::create_directory(file);
@@ -270,7 +270,7 @@ TEST(SpareFile, NamesEarlierTakeOvers) {
   const SpareFile file{.box = "own",
                        .taken = {{.box = "other", .at = 100}, {.box = "counts", .at = 100, .rest_count = 2}}};
   const auto hindrance = [&file](std::string box, double at, std::optional<std::int64_t> count = {}) {
-    return file.hindrance({.box = std::move(box), .at = at, .rest_count = count});
+    return file.refusal_reason({.box = std::move(box), .at = at, .rest_count = count});
   };
   EXPECT_EQ(hindrance("other", 101), "");
   EXPECT_EQ(hindrance("third", 1), "");

@@ -137,7 +137,7 @@ TEST_F(TakeoverTest, RepeatsAfterAPowerCut) {
 }
 
 TEST_F(TakeoverTest, EndsStandby) {
-  ASSERT_TRUE((SpareFile{.box = "b", .rest = Rest{.code = "1", .since = 5}}.write(state_.path())));
+  ASSERT_TRUE((SpareFile{.box = "b", .rest = Standby{.code = "1", .since = 5}}.write(state_.path())));
   ASSERT_TRUE(takeover_.begin(spare::write(content())));
   ASSERT_EQ(takeover_.finish(loop_), true);
   EXPECT_FALSE(SpareFile::read(state_.path())->rest);

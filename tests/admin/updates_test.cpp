@@ -127,7 +127,7 @@ TEST_F(UpdatesTest, StoreAWholeBundleAndRequestIt) {
   EXPECT_EQ(content_of(state_ / update::kBundleFile), bundle);
   EXPECT_EQ(fs::status(state_ / update::kBundleFile).permissions(), fs::perms(0600));
   ASSERT_TRUE(asked());
-  EXPECT_EQ(asked()->what, update::Request::What::Install);
+  EXPECT_EQ(asked()->what, update::Request::Command::Install);
   EXPECT_TRUE(asked()->again);
   EXPECT_EQ(updates_.state().status.doing, "checking");
   EXPECT_FALSE(fs::exists(state_ / "update.raucb.part"));
@@ -215,7 +215,7 @@ TEST_F(UpdatesTest, EndWithTheAnswerOfAditUpdate) {
   ASSERT_TRUE(updates_.install_from_stick(true));
   const auto request = asked();
   ASSERT_TRUE(request);
-  EXPECT_EQ(request->what, update::Request::What::Stick);
+  EXPECT_EQ(request->what, update::Request::Command::Stick);
   EXPECT_EQ(updates_.state().status.doing, "checking");
   write_status({.nonce = request->nonce, .refusal = "no stick has an update"});
   wait();
@@ -228,28 +228,28 @@ TEST_F(UpdatesTest, RestartDuringAReportOnlyIfConfirmed) {
   EXPECT_EQ(updates_.restart(false).error().sentence, "report 7 is being sent");
   EXPECT_FALSE(asked());
   ASSERT_TRUE(updates_.restart(true));
-  EXPECT_EQ(asked()->what, update::Request::What::Restart);
+  EXPECT_EQ(asked()->what, update::Request::Command::Restart);
   EXPECT_EQ(updates_.state().status.doing, "restarting");
 }
 
 TEST_F(UpdatesTest, OfferGoBackAndStayInAnUnexpectedSlot) {
-  EXPECT_EQ(updates_.go_back(true).error().sentence, update::kNoStray);
-  EXPECT_EQ(updates_.stay().error().status, icd::Status::Conflict);
+  EXPECT_EQ(updates_.restart_proven_slot(true).error().sentence, update::kNoStray);
+  EXPECT_EQ(updates_.keep_running_slot().error().status, icd::Status::Conflict);
   EXPECT_FALSE(asked());
   wait();
   write_status({.stray = "slot B runs, with 0.1.0"});
   EXPECT_EQ(updates_.state().status.stray, "slot B runs, with 0.1.0");
   under_way_ = "report 7 is being sent";
-  EXPECT_EQ(updates_.go_back(false).error().sentence, "report 7 is being sent");
-  ASSERT_TRUE(updates_.go_back(true));
-  EXPECT_EQ(asked()->what, update::Request::What::Back);
+  EXPECT_EQ(updates_.restart_proven_slot(false).error().sentence, "report 7 is being sent");
+  ASSERT_TRUE(updates_.restart_proven_slot(true));
+  EXPECT_EQ(asked()->what, update::Request::Command::Back);
   EXPECT_EQ(updates_.state().status.doing, "restarting");
 }
 
 TEST_F(UpdatesTest, RequestToStayInTheSlot) {
   write_status({.stray = "slot B runs, with 0.1.0"});
-  ASSERT_TRUE(updates_.stay());
-  EXPECT_EQ(asked()->what, update::Request::What::Stay);
+  ASSERT_TRUE(updates_.keep_running_slot());
+  EXPECT_EQ(asked()->what, update::Request::Command::Stay);
 }
 
 TEST_F(UpdatesTest, RejectAnotherDuringATrial) {

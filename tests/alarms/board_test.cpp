@@ -194,10 +194,10 @@ TEST(Board, OldAcknowledgementHidesNoNewAlarm) {
     EXPECT_FALSE(is_quiet(board, each, 131)) << each.id << each.headline.now() << each.why;
   }
   Board late = after_a_restart(few, 130);
-  EXPECT_FALSE(is_quiet(late, few, 131 + Acknowledged::kWaitsFor))
+  EXPECT_FALSE(is_quiet(late, few, 131 + Acknowledgement::kWaitsFor))
       << "the condition is found a minute after the start";
-  Board old = after_a_restart(few, 101 + Acknowledged::kHolds);
-  EXPECT_FALSE(is_quiet(old, few, 102 + Acknowledged::kHolds)) << "the box was off too long";
+  Board old = after_a_restart(few, 101 + Acknowledgement::kHolds);
+  EXPECT_FALSE(is_quiet(old, few, 102 + Acknowledgement::kHolds)) << "the box was off too long";
   Board early = after_a_restart(few, 99);
   EXPECT_FALSE(is_quiet(early, few, 99)) << "the clock went back";
   Board was_worse = after_a_restart(few, 130);
@@ -227,7 +227,7 @@ TEST(Acknowledged, AreBounded) {
   many[7].why = std::string(5000, 'x');
   board.update(many, 90);
   for (const Condition& each : many) ASSERT_TRUE(board.acknowledge(each.id, 100));
-  EXPECT_EQ(board.acknowledgements().size(), Acknowledged::kMost);
+  EXPECT_EQ(board.acknowledgements().size(), Acknowledgement::kMost);
   EXPECT_LT(write_acknowledged(board.acknowledgements()).size(), 100'000u);
 }
 

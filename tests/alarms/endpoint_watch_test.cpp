@@ -15,7 +15,7 @@ class EndpointWatchTest : public testing::Test {
     lasts(1);
   }
   void lasts(int seconds) {
-    for (int i = 0; i < seconds; ++i) watch_.look(seen_, now_++);
+    for (int i = 0; i < seconds; ++i) watch_.update(seen_, now_++);
   }
   /// One request per second gets that status.
   void answers(int status, int seconds, std::size_t way = 0) {

@@ -68,7 +68,7 @@ TEST_F(HabitsTest, BlameAKnownRobotSilentSinceARestart) {
 TEST_F(HabitsTest, SurviveARestart) {
   speaks("uav5", 1, 20);
   Habits next;
-  next.carry_on("uav5", *habits_.habit_of("uav5"), 1);  // a message that was queued before
+  next.restore("uav5", *habits_.habit_of("uav5"), 1);  // a message that was queued before
   next.on_count("uav5", 1, now_ + 5);
   EXPECT_FALSE(next.robots(rules_, now_ + 30).at("uav5").silent);
   EXPECT_TRUE(next.robots(rules_, now_ + 31).at("uav5").silent) << "counted from its last message";
@@ -122,7 +122,7 @@ TEST(Growth, IsReportedOnceItLasts) {
   Growth growth;
   double now = 1000;
   for (int second = 0; second < 120; ++second)
-    growth.look(static_cast<std::size_t>(second) << 18, kRoom, now++);
+    growth.update(static_cast<std::size_t>(second) << 18, kRoom, now++);
   EXPECT_TRUE(growth.grows(now));
   EXPECT_FALSE(growth.grows(now + Growth::kTold + Growth::kStep)) << "the growth is over";
 }
@@ -130,14 +130,14 @@ TEST(Growth, IsReportedOnceItLasts) {
 TEST(Growth, IgnoresOneLargeMap) {
   Growth growth;
   double now = 1000;
-  for (int second = 0; second < 120; ++second) growth.look(second % 20 < 10 ? kRoom / 2 : 0, kRoom, now++);
+  for (int second = 0; second < 120; ++second) growth.update(second % 20 < 10 ? kRoom / 2 : 0, kRoom, now++);
   EXPECT_FALSE(growth.grows(now));
 }
 
 TEST(Growth, IgnoresSmallGrowth) {
   Growth growth;
   double now = 1000;
-  for (std::size_t second = 0; second < 120; ++second) growth.look(second << 10, kRoom, now++);
+  for (std::size_t second = 0; second < 120; ++second) growth.update(second << 10, kRoom, now++);
   EXPECT_FALSE(growth.grows(now));
 }
 

@@ -131,10 +131,10 @@ TEST_F(PageTest, PacksLongAnswersForClientsThatAcceptGzip) {
 TEST(AcceptsGzip, FollowsTheCodingAndItsWeight) {
   for (const char* yes : {"gzip", "GZIP", "deflate, gzip", "br;q=1.0, gzip;q=0.8", "*", "x-gzip",
                           "gzip ; q=0.001", "*;q=0, gzip"})
-    EXPECT_TRUE(takes_gzip(yes)) << yes;
+    EXPECT_TRUE(accepts_gzip(yes)) << yes;
   for (const char* no :
        {"", "identity", "br", "gzip;q=0", "gzip; Q=0.000", "*;q=0", "gzipped", "*, gzip;q=0", ",,;"})
-    EXPECT_FALSE(takes_gzip(no)) << no;
+    EXPECT_FALSE(accepts_gzip(no)) << no;
 }
 
 TEST_F(PageTest, EveryAnswerForbidsForeignContent) {

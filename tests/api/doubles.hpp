@@ -170,7 +170,7 @@ struct FakeResponder final : intake::Responder {
     stream_type = content_type;
     return streaming = std::make_shared<FakeStream>();
   }
-  bool client_gone() const override { return false; }
+  bool is_client_gone() const override { return false; }
 
   std::optional<intake::Answer> answered;
   std::shared_ptr<FakeStream> streaming;
@@ -186,7 +186,9 @@ inline std::string header(const intake::Answer& answer, std::string_view name) {
 
 /// Forwards requests to a handler that is set later.
 struct Forward final : intake::Handler {
-  intake::Credentials read_credentials(const intake::RequestHead& head) override { return to->read_credentials(head); }
+  intake::Credentials read_credentials(const intake::RequestHead& head) override {
+    return to->read_credentials(head);
+  }
   std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder,
                                          std::shared_ptr<intake::FlowControl> flow) override {

@@ -10,7 +10,7 @@ namespace adit::api {
 /// Has the state that a test sets, and records requests.
 struct FakeCertificate final : Certificate {
   CertificateView state() const override { return view; }
-  void take(const std::string& pem, Done done) override { record("take " + pem, done); }
+  void replace(const std::string& pem, Done done) override { record("take " + pem, done); }
   void make(Done done) override { record("make", done); }
 
   void record(const std::string& what, const Done& done) {

@@ -23,7 +23,7 @@ struct FakeKeys final : Keys {
   bool first_start() const override { return !operator_; }
   bool is_code(std::string_view presented) const override { return first_start() && presented == "12345678"; }
   bool set_up_open() const override { return set_up; }
-  bool somebody_at_box() const override { return at_box; }
+  bool is_operator_at_box() const override { return at_box; }
   void check(std::string password, std::string,
              std::function<void(std::optional<access::Role>)> done) override {
     ++checked;

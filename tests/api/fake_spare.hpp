@@ -11,7 +11,7 @@ namespace adit::api {
 /// Has the state that a test sets, and records requests.
 struct FakeSpare final : Spare {
   SpareView state() const override { return view; }
-  icd::Checked<void> stand_by() override { return record("standby"); }
+  icd::Checked<void> enter_standby() override { return record("standby"); }
   icd::Checked<void> resume() override { return record("resume"); }
   void export_to(Sealed done) override {
     const auto permitted = record("export");
@@ -19,7 +19,7 @@ struct FakeSpare final : Spare {
     done(file);
   }
   void export_to_stick(Done done) override { done(record("export to the stick")); }
-  icd::Checked<void> take_from_stick(const std::string& name) override { return record("take " + name); }
+  icd::Checked<void> import_from_stick(const std::string& name) override { return record("take " + name); }
   icd::Checked<void> import_file(std::string taken) override {
     file = std::move(taken);
     return record("take");

@@ -34,11 +34,11 @@ struct FakeUpdates final : Updates {
     return outcome;
   }
 
-  icd::Checked<void> go_back(bool anyway) override {
+  icd::Checked<void> restart_proven_slot(bool anyway) override {
     backs.push_back(anyway);
     return outcome;
   }
-  icd::Checked<void> stay() override {
+  icd::Checked<void> keep_running_slot() override {
     ++stays;
     return outcome;
   }

@@ -97,7 +97,7 @@ class LiveTest : public testing::Test {
   loop::SimulatedTime time;
   loop::Loop loop;
   FakeSource source;
-  Live live{loop, source};
+  RunStream live{loop, source};
   std::optional<intake::Answer> refusal;
 };
 
@@ -119,7 +119,7 @@ TEST_F(LiveTest, LimitsEventsPerSecond) {
     pass(milliseconds{10});
   }
   EXPECT_GE(page->sent.size(), 3);
-  EXPECT_LE(page->sent.size(), 1 + Live::kEventsPerSecond + 1);
+  EXPECT_LE(page->sent.size(), 1 + RunStream::kEventsPerSecond + 1);
 }
 
 TEST_F(LiveTest, SendsMinorChangesOnceASecond) {
@@ -163,9 +163,9 @@ TEST_F(LiveTest, SendsTheLastOfManyChanges) {
 }
 
 TEST_F(LiveTest, SendsAHeartbeatWithinFiveSeconds) {
-  static_assert(Live::kHeartbeat < milliseconds{5000});
+  static_assert(RunStream::kHeartbeat < milliseconds{5000});
   const auto page = open();
-  pass(Live::kHeartbeat + milliseconds{100});
+  pass(RunStream::kHeartbeat + milliseconds{100});
   EXPECT_THAT(page->sent, SizeIs(testing::Ge(2)));
 }
 
@@ -194,7 +194,7 @@ TEST_F(LiveTest, ReadsTheViewOnceForAllPages) {
 TEST_F(LiveTest, EndsWithTheSession) {
   const auto page = open();
   welcome = false;
-  pass(Live::kHeartbeat + milliseconds{100});
+  pass(RunStream::kHeartbeat + milliseconds{100});
   EXPECT_THAT(page->sent, SizeIs(1));
   EXPECT_EQ(page.use_count(), 1) << "the stream is still referenced";
 }
@@ -208,7 +208,7 @@ TEST_F(LiveTest, SendsRunningTimesOnlyWithTheHeartbeat) {
     pass(milliseconds{260});
   }
   EXPECT_THAT(page->sent, SizeIs(1));
-  pass(Live::kHeartbeat);
+  pass(RunStream::kHeartbeat);
   ASSERT_THAT(page->sent, SizeIs(testing::Ge(2)));
   EXPECT_THAT(page->sent[1], StartsWith("event: patch\ndata: {\"now\":"));
 }
@@ -291,7 +291,7 @@ TEST_F(LiveTest, SendsASlowPageAWholeViewInsteadOfPatches) {
   pass(milliseconds{300});
   EXPECT_THAT(slow->sent, SizeIs(2));
   EXPECT_THAT(slow->sent[1], StartsWith("event: patch\n"));
-  slow->queued = 2 * whole + Live::kMostPatches;
+  slow->queued = 2 * whole + RunStream::kMostPatches;
   change();
   pass(milliseconds{300});
   ASSERT_THAT(slow->sent, SizeIs(3));
@@ -334,8 +334,8 @@ TEST_F(LiveTest, SendsEachViewToEachPage) {
 
 TEST_F(LiveTest, ReservesConnectionsForRobots) {
   std::vector<std::shared_ptr<FakeStream>> pages;
-  pages.reserve(Live::kMostPages);
-  for (std::size_t i = 0; i < Live::kMostPages; ++i) pages.push_back(open());
+  pages.reserve(RunStream::kMostPages);
+  for (std::size_t i = 0; i < RunStream::kMostPages; ++i) pages.push_back(open());
   EXPECT_THAT(pages, Each(testing::NotNull()));
   EXPECT_EQ(open(), nullptr);
   ASSERT_TRUE(refusal);

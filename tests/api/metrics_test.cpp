@@ -14,9 +14,9 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-Measured measured(const std::string& name) {
+MetricsInput measured(const std::string& name) {
   const Time now = 1'780'000'000;
-  Measured measured{.view = *scene(name, now, 60), .reports = {}, .usage = {}, .about = {}};
+  MetricsInput measured{.view = *scene(name, now, 60), .reports = {}, .usage = {}, .about = {}};
   measured.reports = counts_of(measured.view.reports);
   return measured;
 }
@@ -28,7 +28,7 @@ TEST(Metrics, FollowTheFormatForAnyRun) {
 }
 
 TEST(Metrics, ShowTheValuesOfTheView) {
-  Measured all = measured("calm");
+  MetricsInput all = measured("calm");
   all.view.run =
       icd::RunStatus{.score = 7, .run_clock = 750, .remaining_reports = 18, .current_team = "adit"};
   all.view.run_clock = {.seconds = 756.5, .age = 2, .runs = true};
@@ -94,7 +94,7 @@ TEST(Metrics, ShowTheValuesOfTheView) {
 }
 
 TEST(Metrics, CountReportsByState) {
-  Measured all = measured("empty");
+  MetricsInput all = measured("empty");
   all.reports.in[static_cast<std::size_t>(dispatch::ReportState::Queued)] = 2;
   all.reports.asking = 1;
   const std::string text = write_metrics(all);

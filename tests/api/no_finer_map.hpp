@@ -6,8 +6,10 @@
 
 namespace adit::api {
 
-struct NoFinerMap final : FinerMap {
-  std::optional<picture::Finer> finer(const picture::Layer&, std::uint64_t) const override { return {}; }
+struct NoFinerMap final : FineMap {
+  std::optional<picture::FinerLevels> finer_levels(const picture::Layer&, std::uint64_t) const override {
+    return {};
+  }
   void tile(const picture::Layer&, const picture::TileIndex&, Done done) override { done(nullptr); }
 };
 

@@ -31,7 +31,7 @@ inline const std::vector<intake::Header> kJsonByToken = {kByToken, {"Content-Typ
 
 /// Everything that an API needs.
 struct Doubles {
-  Served served() {
+  ApiServices served() {
     return {.source = source,
             .decisions = decisions,
             .gateway_control = decisions,

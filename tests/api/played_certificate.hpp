@@ -9,7 +9,7 @@ namespace adit::api {
 /// A box that accepts each upload with a certificate, and each time shows another fingerprint.
 struct PlayedCertificate final : Certificate {
   CertificateView state() const override { return view; }
-  void take(const std::string& pem, Done done) override {
+  void replace(const std::string& pem, Done done) override {
     if (!pem.contains("BEGIN CERTIFICATE"))
       return done(icd::unprocessable("there is no certificate in the file; expected PEM"));
     make(done);

@@ -25,7 +25,7 @@ struct PlayedSpare final : Spare {
     step();
     return shown;
   }
-  icd::Checked<void> stand_by() override {
+  icd::Checked<void> enter_standby() override {
     view.standby = true;
     view.why = "its spare takes over";
     view.code = "1234 5678 9012 3456";
@@ -43,7 +43,7 @@ struct PlayedSpare final : Spare {
     view.stick->refusal.clear();
     done({});
   }
-  icd::Checked<void> take_from_stick(const std::string& name) override {
+  icd::Checked<void> import_from_stick(const std::string& name) override {
     view.stick->doing = "reading";
     view.stick->refusal.clear();
     taken_ = name;

@@ -30,8 +30,8 @@ struct PlayedUpdates final : Updates {
     return {};
   }
 
-  icd::Checked<void> go_back(bool anyway) override { return restart(anyway); }
-  icd::Checked<void> stay() override {
+  icd::Checked<void> restart_proven_slot(bool anyway) override { return restart(anyway); }
+  icd::Checked<void> keep_running_slot() override {
     view.status.stray.clear();
     return {};
   }

@@ -52,8 +52,8 @@ class ApplierTest : public testing::Test {
   void ask(const char* file, const Request& request) {
     fs::rename(folder.put("new", codec::write_file(request)), options.wanted + '/' + file);
   }
-  void want(std::chrono::milliseconds within = std::chrono::minutes(1)) {
-    ask(network::kWantedFile, network::Wanted{kNonce, within, tried});
+  void request_change(std::chrono::milliseconds within = std::chrono::minutes(1)) {
+    ask(network::kWantedFile, network::ChangeRequest{kNonce, within, tried});
   }
   void break_networkd() { folder.put("broken", ""); }
   void mend_networkd() { fs::remove(folder / "broken"); }
@@ -84,7 +84,7 @@ class ApplierTest : public testing::Test {
 TEST_F(ApplierTest, DeletesAForgetRequestOnceDone) {
   folder.put("state/confirmed.json", network::write_kept(network::numbers()));
   EXPECT_TRUE(runs_well());
-  folder.put("wanted/forget.json", codec::write_file(network::Forget{kNonce}));
+  folder.put("wanted/forget.json", codec::write_file(network::FactoryRequest{kNonce}));
   EXPECT_TRUE(runs_well());
   EXPECT_EQ(seen(), "state:\n\nwanted:\nforget.json\n")
       << "the request must be removed only after its effect is on disk";
@@ -105,7 +105,7 @@ TEST_F(ApplierTest, DeletesAnInvalidForgetRequest) {
 }
 
 TEST_F(ApplierTest, TellsWhyItCannotWork) {
-  want();
+  request_change();
   fs::create_directory(options.state + "/confirmed.json");
   EXPECT_FALSE(Life(options).started);
   EXPECT_THAT(status().trouble, testing::HasSubstr("confirmed.json: is not a regular file"));
@@ -138,7 +138,7 @@ TEST_F(ApplierTest, ReportsAFailedAddressProbe) {
   EXPECT_TRUE(runs_well());
   ask(network::kProbeFile, network::Probe{kNonce, "10.100.1.200"});
   EXPECT_TRUE(runs_well());
-  const auto probed = host::read_row<network::Probed>(options.status + '/' + network::kProbedFile);
+  const auto probed = host::read_row<network::ProbeResult>(options.status + '/' + network::kProbedFile);
   ASSERT_TRUE(probed && *probed);
   EXPECT_EQ((*probed)->found_on, "");
   EXPECT_THAT((*probed)->not_sought, testing::StartsWith("none0: "));
@@ -146,23 +146,23 @@ TEST_F(ApplierTest, ReportsAFailedAddressProbe) {
 
 TEST_F(ApplierTest, AcceptsAConfirmationThatCameWhileBusy) {
   EXPECT_TRUE(runs_well());
-  want(network::kLeastWithin);
+  request_change(network::kLeastWithin);
   Life life(options);
   ASSERT_TRUE(status().pending);
-  folder.put("word", codec::write_file(network::Decision{kNonce, network::Decision::What::Confirm}));
+  folder.put("word", codec::write_file(network::Decision{kNonce, network::Decision::Command::Confirm}));
   ask(network::kEndpointsFile, by_gateway);
   life.loop.run();
-  EXPECT_EQ(status().ended, network::Ended::Confirmed) << status().why;
+  EXPECT_EQ(status().ended, network::ChangeOutcome::Confirmed) << status().why;
   EXPECT_EQ(status().kept, tried);
 }
 
 TEST_F(ApplierTest, AcceptsAConfirmationThatCameBeforeStop) {
   EXPECT_TRUE(runs_well());
-  want();
+  request_change();
   Life life(options);
-  ask(network::kWordFile, network::Decision{kNonce, network::Decision::What::Confirm});
+  ask(network::kWordFile, network::Decision{kNonce, network::Decision::Command::Confirm});
   life.applier.stop();
-  EXPECT_EQ(status().ended, network::Ended::Confirmed);
+  EXPECT_EQ(status().ended, network::ChangeOutcome::Confirmed);
 }
 
 class NetworkdFailureTest : public ApplierTest {
@@ -185,7 +185,7 @@ class NetworkdFailureTest : public ApplierTest {
 };
 
 TEST_F(NetworkdFailureTest, WhileAChangeIsRevertedAfterAKill) {
-  want();
+  request_change();
   EXPECT_TRUE(Life(options).started);
   break_networkd();
   EXPECT_FALSE(Life(options).started);
@@ -193,16 +193,16 @@ TEST_F(NetworkdFailureTest, WhileAChangeIsRevertedAfterAKill) {
   mend_networkd();
   EXPECT_TRUE(runs_well());
   EXPECT_EQ(reloads(), before + 2);
-  EXPECT_EQ(status().ended, network::Ended::Reverted);
+  EXPECT_EQ(status().ended, network::ChangeOutcome::Reverted);
   EXPECT_FALSE(status().pending);
 }
 
 TEST_F(NetworkdFailureTest, WhileAChangeIsRevertedBeforeAStop) {
-  want();
+  request_change();
   {
     Life life(options);
     break_networkd();
-    ask(network::kWordFile, network::Decision{kNonce, network::Decision::What::Revert});
+    ask(network::kWordFile, network::Decision{kNonce, network::Decision::Command::Revert});
     life.loop.turn(std::chrono::seconds(5));
     EXPECT_TRUE(status().pending);
     life.applier.stop();
@@ -222,7 +222,7 @@ TEST_F(NetworkdFailureTest, WhileRoutesChange) {
 }
 
 TEST_F(NetworkdFailureTest, WhileRoutesChangeDuringAPendingChange) {
-  want();
+  request_change();
   Life life(options);
   break_networkd();
   ask(network::kEndpointsFile, by_gateway);
@@ -237,7 +237,7 @@ TEST_F(NetworkdFailureTest, WhileRoutesChangeDuringAPendingChange) {
 
 TEST_F(NetworkdFailureTest, WhileAllIsForgotten) {
   break_networkd();
-  ask(network::kForgetFile, network::Forget{kNonce});
+  ask(network::kForgetFile, network::FactoryRequest{kNonce});
   EXPECT_FALSE(runs_well());
   EXPECT_FALSE(Life(options).started);
   EXPECT_EQ(status().kept, kept) << "the addresses are still in use";

@@ -18,7 +18,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::MatchesRegex;
 using testing::Not;
-using enum CertificateRequest::What;
+using enum CertificateRequest::Command;
 
 constexpr const char* kPage = "basicConstraints=critical,CA:FALSE\nextendedKeyUsage=serverAuth\n";
 constexpr const char* kAuthority = "basicConstraints=critical,CA:TRUE\nkeyUsage=keyCertSign\n";
@@ -41,9 +41,9 @@ class CertificatesTest : public testing::Test {
     const auto done = Certificates(options).work();
     EXPECT_TRUE(done) << done.error();
   }
-  void ask(CertificateRequest::What what, const std::string& address = "") {
+  void ask(CertificateRequest::Command what, const std::string& address = "") {
     const CertificateRequest request{.nonce = host::draw_nonce(), .what = what, .address = address};
-    ASSERT_TRUE(host::leave_request(options.state, access::kCertificateRequestFile, request));
+    ASSERT_TRUE(host::write_request(options.state, access::kCertificateRequestFile, request));
     work();
     EXPECT_EQ(status().nonce, request.nonce);
     EXPECT_THAT(*host::names_in(options.status), Not(testing::Contains(testing::EndsWith(".pem"))));

@@ -42,13 +42,13 @@ class AddressConflictsTest : public testing::Test {
  protected:
   AddressConflictsTest() {
     takers.set_own({kAddress, kAnother}, {kOwn, kOwnOther}, now);
-    takers.take_due(now);
-    for (const seconds gap : ConflictDetector::kFirstGaps) takers.take_due(now += gap);
+    takers.pop_due(now);
+    for (const seconds gap : ConflictDetector::kFirstGaps) takers.pop_due(now += gap);
     now += ConflictDetector::kBetween;
   }
 
-  void hear(const Bytes& bytes) {
-    if (const auto read = read_arp(bytes)) takers.hear(*read, now);
+  void receive(const Bytes& bytes) {
+    if (const auto read = read_arp(bytes)) takers.on_packet(*read, now);
   }
   /// Address and MAC address of each conflict.
   std::vector<std::pair<std::uint32_t, Mac>> taken() const {
@@ -69,10 +69,10 @@ TEST_F(AddressConflictsTest, AreOtherMachinesThatUseTheAddress) {
       {"an announcement that is an answer", packet(kAnswers, kFirst, kAddress, kAddress)},
   };
   for (const auto& [what, bytes] : cases) {
-    hear(bytes);
+    receive(bytes);
     EXPECT_THAT(taken(), ElementsAre(std::pair(kAddress, kFirst))) << what;
     now += network::kTakenFor;
-    takers.take_due(now);
+    takers.pop_due(now);
     EXPECT_THAT(taken(), IsEmpty()) << what;
   }
 }
@@ -93,31 +93,31 @@ TEST_F(AddressConflictsTest, AreNoOtherMachines) {
       {"no ARP", no_arp},
   };
   for (const auto& [what, bytes] : cases) {
-    hear(bytes);
+    receive(bytes);
     EXPECT_THAT(taken(), IsEmpty()) << what;
   }
   const Bytes whole = packet(kAnswers, kFirst, kAddress, kElsewhere);
   for (std::size_t size = 0; size < whole.size(); ++size) {
-    hear(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)));
+    receive(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)));
     EXPECT_THAT(taken(), IsEmpty()) << size;
   }
 }
 
 TEST_F(AddressConflictsTest, NameTheFirstOfSeveralWhileItIsHeard) {
-  hear(packet(kAnswers, kFirst, kAddress, kElsewhere));
+  receive(packet(kAnswers, kFirst, kAddress, kElsewhere));
   for (seconds waited(0); waited < network::kTakenFor; waited += seconds(1)) {
-    hear(packet(kAnswers, kSecond, kAddress, kElsewhere));
+    receive(packet(kAnswers, kSecond, kAddress, kElsewhere));
     EXPECT_THAT(taken(), ElementsAre(std::pair(kAddress, kFirst)));
-    takers.take_due(now += seconds(1));
+    takers.pop_due(now += seconds(1));
   }
   EXPECT_THAT(taken(), ElementsAre(std::pair(kAddress, kFirst))) << "the conflict lasts";
-  hear(packet(kAnswers, kSecond, kAddress, kElsewhere));
+  receive(packet(kAnswers, kSecond, kAddress, kElsewhere));
   EXPECT_THAT(taken(), ElementsAre(std::pair(kAddress, kSecond)));
 }
 
 TEST_F(AddressConflictsTest, AreForgottenWithTheAddress) {
-  hear(packet(kAnswers, kFirst, kAddress, kElsewhere));
-  hear(packet(kAnswers, kFirst, kAnother, kElsewhere));
+  receive(packet(kAnswers, kFirst, kAddress, kElsewhere));
+  receive(packet(kAnswers, kFirst, kAnother, kElsewhere));
   takers.set_own({kAnother, kElsewhere}, {kOwn}, now);
   EXPECT_THAT(taken(), ElementsAre(std::pair(kAnother, kFirst)));
   takers.set_own({kAnother, kAddress}, {kOwn}, now);
@@ -128,18 +128,18 @@ TEST_F(AddressConflictsTest, AreProbedForANewAddressOnly) {
   ConflictDetector fresh;
   EXPECT_EQ(fresh.wake(), std::nullopt);
   fresh.set_own({kAddress}, {kOwn}, now);
-  EXPECT_THAT(fresh.take_due(now), ElementsAre(kAddress));
+  EXPECT_THAT(fresh.pop_due(now), ElementsAre(kAddress));
   for (const seconds gap : ConflictDetector::kFirstGaps) {
-    EXPECT_THAT(fresh.take_due(now), IsEmpty());
+    EXPECT_THAT(fresh.pop_due(now), IsEmpty());
     now += gap;
     EXPECT_EQ(fresh.wake(), now);
-    EXPECT_THAT(fresh.take_due(now), ElementsAre(kAddress));
+    EXPECT_THAT(fresh.pop_due(now), ElementsAre(kAddress));
   }
   EXPECT_EQ(fresh.wake(), std::nullopt);
   fresh.set_own({kAddress}, {kOwn}, now);
   EXPECT_EQ(fresh.wake(), std::nullopt) << "the address was probed already";
   fresh.restart_probing(now);
-  EXPECT_THAT(fresh.take_due(now), ElementsAre(kAddress)) << "the cable was plugged in";
+  EXPECT_THAT(fresh.pop_due(now), ElementsAre(kAddress)) << "the cable was plugged in";
 }
 
 TEST_F(AddressConflictsTest, AreNotLostBetweenTheFirstProbes) {
@@ -148,7 +148,7 @@ TEST_F(AddressConflictsTest, AreNotLostBetweenTheFirstProbes) {
   fresh.set_own({kAddress}, {kOwn}, now);
   const auto all = read_arp(packet(kAnswers, kFirst, kAddress, kElsewhere));
   for (; now < began + std::chrono::minutes(2); now = *fresh.wake()) {
-    if (!fresh.take_due(now).empty() && now > began + seconds(2)) fresh.hear(*all, now);
+    if (!fresh.pop_due(now).empty() && now > began + seconds(2)) fresh.on_packet(*all, now);
     ASSERT_TRUE(fresh.wake());
     const std::size_t answering = now >= began + seconds(15) ? 1 : 0;
     ASSERT_EQ(fresh.conflicts().size(), answering) << "the other host answers each probe";
@@ -156,11 +156,11 @@ TEST_F(AddressConflictsTest, AreNotLostBetweenTheFirstProbes) {
 }
 
 TEST_F(AddressConflictsTest, AreProbedAgainOnlyWhilePresent) {
-  hear(packet(kAnswers, kFirst, kAddress, kElsewhere));
+  receive(packet(kAnswers, kFirst, kAddress, kElsewhere));
   const auto heard = now;
   std::vector<seconds> asked;
   for (; takers.wake(); now = *takers.wake()) {
-    if (!takers.take_due(now).empty()) asked.push_back(std::chrono::duration_cast<seconds>(now - heard));
+    if (!takers.pop_due(now).empty()) asked.push_back(std::chrono::duration_cast<seconds>(now - heard));
     if (!takers.wake()) break;
   }
   EXPECT_THAT(asked, ElementsAre(seconds(0), seconds(5), seconds(10), seconds(15), seconds(20)));
@@ -168,9 +168,9 @@ TEST_F(AddressConflictsTest, AreProbedAgainOnlyWhilePresent) {
 }
 
 TEST_F(AddressConflictsTest, AreSoughtAfterAForeignProbe) {
-  hear(packet(kAsks, kFirst, 0, kAnother));
-  EXPECT_THAT(takers.take_due(now), ElementsAre(kAnother));
-  hear(packet(kAnswers, kFirst, kAnother, 0));
+  receive(packet(kAsks, kFirst, 0, kAnother));
+  EXPECT_THAT(takers.pop_due(now), ElementsAre(kAnother));
+  receive(packet(kAnswers, kFirst, kAnother, 0));
   EXPECT_THAT(taken(), ElementsAre(std::pair(kAnother, kFirst)));
 }
 
@@ -185,9 +185,9 @@ TEST_F(AddressConflictsTest, AreBoundedAndProbedSeldom) {
                         static_cast<std::uint8_t>(i >> 16),
                         static_cast<std::uint8_t>(i >> 8),
                         static_cast<std::uint8_t>(i)};
-    hear(packet(kAsks, sender, i % 3 == 0 ? 0 : kAddress, kAddress));
-    hear(packet(kAsks, sender, 0x0b000000 + i, kAddress));
-    asked += takers.take_due(now).size();
+    receive(packet(kAsks, sender, i % 3 == 0 ? 0 : kAddress, kAddress));
+    receive(packet(kAsks, sender, 0x0b000000 + i, kAddress));
+    asked += takers.pop_due(now).size();
     now += std::chrono::milliseconds(1);
   }
   EXPECT_EQ(takers.conflicts().size(), 1u);
@@ -195,7 +195,7 @@ TEST_F(AddressConflictsTest, AreBoundedAndProbedSeldom) {
   std::vector<std::uint32_t> many(1000);
   std::iota(many.begin(), many.end(), 0x0c000000u);
   takers.set_own(many, {kOwn}, now);
-  EXPECT_EQ(takers.take_due(now).size(), ConflictDetector::kMost);
+  EXPECT_EQ(takers.pop_due(now).size(), ConflictDetector::kMost);
 }
 
 /// The kernel runs the filter on an unprivileged socket.

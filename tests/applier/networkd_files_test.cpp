@@ -152,7 +152,7 @@ TEST_F(NetworkdFilesTest, RevertToWhatThisProcessConfirmed) {
 TEST_F(NetworkdFilesTest, LoseAnUnconfirmedChangeInAPowerCut) {
   ASSERT_TRUE(files->apply(first));
   restart(true);
-  EXPECT_FALSE(files->found_a_change());
+  EXPECT_FALSE(files->has_unconfirmed_change());
   EXPECT_EQ(files->confirmed_numbers(), std::nullopt);
   EXPECT_THAT(in(options.networkd), IsEmpty());
 }
@@ -160,7 +160,7 @@ TEST_F(NetworkdFilesTest, LoseAnUnconfirmedChangeInAPowerCut) {
 TEST_F(NetworkdFilesTest, RevertAnUnconfirmedChangeAfterAKill) {
   ASSERT_TRUE(files->apply(first));
   restart(false);
-  EXPECT_TRUE(files->found_a_change());
+  EXPECT_TRUE(files->has_unconfirmed_change());
   EXPECT_THAT(in(options.networkd), IsEmpty());
   EXPECT_EQ(reloads(), 2u);
 }

@@ -27,13 +27,13 @@ class ExchangedCablesTest : public testing::Test {
   /// Passes time. Hosts that are present answer requests.
   void pass(seconds time, bool is_at_team, bool is_at_post) {
     for (const auto until = now + time; now < until; now += seconds(1)) {
-      const SwappedCables::Due due = exchanged.take_due(now);
+      const SwappedCables::DueProbes due = exchanged.pop_due(now);
       asked_at_post += due.at_post.size();
       for (const std::uint32_t address : due.at_team) {
-        if (is_at_team) exchanged.hear_at_team(from(address), now);
+        if (is_at_team) exchanged.on_team_packet(from(address), now);
       }
       for (const std::uint32_t address : due.at_post) {
-        if (is_at_post) exchanged.hear_at_post(from(address), now);
+        if (is_at_post) exchanged.on_command_post_packet(from(address), now);
       }
     }
   }
@@ -68,7 +68,7 @@ TEST_F(ExchangedCablesTest, AreNotFoundIfItAnswersAtItsOwnPort) {
 
 TEST_F(ExchangedCablesTest, AreNotFoundAfterASinglePacket) {
   pass(std::chrono::minutes(1), false, false);
-  exchanged.hear_at_team(from(kScoring), now);
+  exchanged.on_team_packet(from(kScoring), now);
   for (seconds waited(0); waited < network::kTakenFor; waited += seconds(1)) {
     EXPECT_THAT(found(), IsEmpty());
     pass(seconds(1), false, false);
@@ -78,7 +78,7 @@ TEST_F(ExchangedCablesTest, AreNotFoundAfterASinglePacket) {
 
 TEST_F(ExchangedCablesTest, IgnorePacketsOfThisMachine) {
   for (int i = 0; i < 60; ++i) {
-    exchanged.hear_at_team(from(kScoring, kOurs), now);
+    exchanged.on_team_packet(from(kScoring, kOurs), now);
     pass(seconds(1), false, false);
   }
   EXPECT_THAT(found(), IsEmpty());
@@ -97,8 +97,8 @@ TEST_F(ExchangedCablesTest, LimitProbesAtTheCommandPostPort) {
   asked_at_post = 0;
   const auto began = now;
   for (; now < began + std::chrono::minutes(1); now += std::chrono::milliseconds(10)) {
-    exchanged.hear_at_team(from(kScoring), now);
-    asked_at_post += exchanged.take_due(now).at_post.size();
+    exchanged.on_team_packet(from(kScoring), now);
+    asked_at_post += exchanged.pop_due(now).at_post.size();
   }
   EXPECT_LE(asked_at_post,
             static_cast<std::size_t>(std::chrono::minutes(1) / ConflictDetector::kBetween) + 1);

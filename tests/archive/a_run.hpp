@@ -28,7 +28,7 @@ struct ARun {
       easel.draw(picture::grid_at(64.0 * (i % 100), 0, 64, 0.25, cells));
     }
   }
-  Seen seen() {
+  RunSnapshot seen() {
     sample.at = now();
     return {.now = now(),
             .stamp = stamp(),

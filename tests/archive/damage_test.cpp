@@ -31,7 +31,7 @@ class Damage : public testing::Test {
   /// Reads the file and counts the restored tiles. Each tile is unchanged or missing.
   std::size_t sound(const std::string& bytes) {
     RunRecords told(picture::Mosaic::kBudget);
-    told.tell(bytes, 1);
+    told.add_file(bytes, 1);
     std::size_t count = 0;
     for (const auto& [key, of] : told.files()) {
       const auto is = told.picture().tile(key.first, key.second, {}).tile;
@@ -63,8 +63,8 @@ TEST_F(Damage, OfTheHeadLosesItsTiles) {
   damaged[20] ^= 1;
   EXPECT_EQ(sound(damaged), 0U);
   RunRecords told(picture::Mosaic::kBudget);
-  told.tell(file, 1);
-  told.tell(damaged, 2);  // a later file of the same run
+  told.add_file(file, 1);
+  told.add_file(damaged, 2);  // a later file of the same run
   EXPECT_EQ(told.files().size(), tiles);
 }
 
@@ -79,10 +79,10 @@ TEST_F(Damage, ByACutLeavesEarlierRecords) {
 
 TEST_F(Damage, IsCountedWithoutATornEnd) {
   RunRecords torn(0), damaged(0);
-  torn.tell(file.substr(0, file.size() - 1), 1);
+  torn.add_file(file.substr(0, file.size() - 1), 1);
   EXPECT_EQ(torn.damaged_records(), 0u);
   file.back() ^= 1;
-  damaged.tell(file + file, 1);
+  damaged.add_file(file + file, 1);
   EXPECT_EQ(damaged.damaged_records(), 2u) << "including the one at the end";
 }
 
@@ -100,7 +100,7 @@ TEST_F(Damage, EverywhereDoesNotCrash) {
 
 TEST_F(Damage, WithARightChecksumIsRejected) {
   for (const std::string_view bytes : {std::string_view("no zlib at all"), std::string_view("x")}) {
-    auto lie = std::make_shared<picture::Packed>();
+    auto lie = std::make_shared<picture::PackedTile>();
     lie->deflated.assign(bytes.begin(), bytes.end());
     const std::string record = record_of(TileState{{"ugv1"}, {0, 9, 9}, 1, lie});
     EXPECT_EQ(sound(file + record), tiles);
@@ -109,8 +109,8 @@ TEST_F(Damage, WithARightChecksumIsRejected) {
 
 TEST_F(Damage, RecordsOfAnotherRunAreIgnored) {
   RunRecords told(picture::Mosaic::kBudget);
-  told.tell(record_of(Head{.run = 9, .began = 1}), 1);
-  told.tell(file, 2);
+  told.add_file(record_of(Head{.run = 9, .began = 1}), 1);
+  told.add_file(file, 2);
   EXPECT_TRUE(told.files().empty());
 }
 
@@ -120,11 +120,11 @@ TEST_F(Damage, AClockStepWrittenTwiceCountsOnce) {
   const std::string step = record_of(Step{.seconds = 50, .when = 7});
   const std::string later = record_of(Step{.seconds = 50, .when = 8});
   RunRecords told(picture::Mosaic::kBudget);
-  told.tell(file + step + step, kLines);
+  told.add_file(file + step + step, kLines);
   EXPECT_EQ(told.tracks()[0].poses[0].at, 1051);
-  told.tell(record_of(run.head) + step + later, kLines);
+  told.add_file(record_of(run.head) + step + later, kLines);
   EXPECT_EQ(told.tracks()[0].poses[0].at, 1101);
-  told.tell(record_of(run.head) + step + later, kLines);
+  told.add_file(record_of(run.head) + step + later, kLines);
   EXPECT_EQ(told.tracks()[0].poses[0].at, 1101) << "both were in the failed write";
 }
 

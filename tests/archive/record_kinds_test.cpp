@@ -9,7 +9,7 @@ namespace adit::archive {
 namespace {
 
 picture::Tile tile(std::string_view bytes) {
-  auto tile = std::make_shared<picture::Packed>();
+  auto tile = std::make_shared<picture::PackedTile>();
   tile->deflated.assign(bytes.begin(), bytes.end());
   tile->crc = 0x12345678;
   return tile;
@@ -76,7 +76,7 @@ TEST(RecordBody, PosesSamplesAndAlarmsReadBackTheSame) {
   ASSERT_TRUE(step);
   EXPECT_TRUE(step->came);
   EXPECT_EQ(step->sentence, "no token");
-  EXPECT_EQ(again(Wiped{7})->stamp, 7);
+  EXPECT_EQ(again(WipeRecord{7})->stamp, 7);
 }
 
 TEST(RecordBody, TilesOfAnotherGeometryDoNotFit) {
@@ -97,8 +97,8 @@ TEST(RecordBody, LongTextIsCutBetweenCharacters) {
 /// Any bytes are read completely or not at all.
 TEST(RecordBody, WrongOrMissingBytesAreRejected) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(again(Wiped{kNone}));
-  EXPECT_FALSE(again(Wiped{-1}));
+  EXPECT_FALSE(again(WipeRecord{kNone}));
+  EXPECT_FALSE(again(WipeRecord{-1}));
   EXPECT_EQ(again(Step{-1, 5}), (Step{-1, 5}));
   EXPECT_FALSE(again(Step{kNone, 0}));
   EXPECT_FALSE(again(Step{-1e300, 0}));
@@ -107,7 +107,7 @@ TEST(RecordBody, WrongOrMissingBytesAreRejected) {
   EXPECT_FALSE(again(TileState{kTile.layer, {0, 1 << 19, 0}, 1, nullptr})) << "out of the world";
   EXPECT_FALSE(again(api::AttentionStep{1, true, "\xff"})) << "no UTF-8";
   for (const Record& one :
-       {Record(kTile), Record(picture::LayerView{}), Record(Wiped{}), Record(Step{}),
+       {Record(kTile), Record(picture::LayerView{}), Record(WipeRecord{}), Record(Step{}),
         Record(api::Track{"r", std::vector<api::TrackPose>(2)}), Record(Sample{.map_ages = {{"r", 1}}}),
         Record(api::AttentionStep{1, true, "s"}), Record(Head{})}) {
     const std::string bytes = body_of(one);

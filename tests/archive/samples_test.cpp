@@ -23,10 +23,10 @@ TEST(Samples, HaveListsOfOneLength) {
 
 TEST(Samples, AreDueEachTwoSecondsAndNeverBackInTime) {
   Samples samples;
-  EXPECT_TRUE(samples.wants(10));
+  EXPECT_TRUE(samples.is_due(10));
   samples.add(Sample{.at = 10});
-  EXPECT_FALSE(samples.wants(11));
-  EXPECT_TRUE(samples.wants(11.9));
+  EXPECT_FALSE(samples.is_due(11));
+  EXPECT_TRUE(samples.is_due(11.9));
   samples.add(Sample{.at = 5});
   EXPECT_THAT(samples.history_after(0).at, ElementsAre(10));
 }
@@ -45,9 +45,9 @@ TEST(Samples, AreThinnedEvenlyAndKeepEach429) {
 
 TEST(Attention, IsRecordedAtItsStartAndEnd) {
   Attention attention;
-  EXPECT_EQ(attention.look({"a", "b"}, 1).size(), 2U);
-  EXPECT_TRUE(attention.look({"b", "a"}, 2).empty());
-  const auto steps = attention.look({"b", "c"}, 3);
+  EXPECT_EQ(attention.update({"a", "b"}, 1).size(), 2U);
+  EXPECT_TRUE(attention.update({"b", "a"}, 2).empty());
+  const auto steps = attention.update({"b", "c"}, 3);
   ASSERT_EQ(steps.size(), 2U);
   EXPECT_FALSE(steps[0].came);
   EXPECT_EQ(steps[0].sentence, "a");
@@ -57,8 +57,8 @@ TEST(Attention, IsRecordedAtItsStartAndEnd) {
 
 TEST(Attention, OfAnEarlierProcessEndsAfterARestart) {
   Attention attention;
-  attention.go_on({{1, true, "a"}, {2, true, "b"}, {3, false, "a"}});
-  const auto steps = attention.look({}, 4);
+  attention.restore({{1, true, "a"}, {2, true, "b"}, {3, false, "a"}});
+  const auto steps = attention.update({}, 4);
   ASSERT_EQ(steps.size(), 1U);
   EXPECT_EQ(steps[0].sentence, "b");
 }
@@ -68,7 +68,7 @@ TEST(Samples, ContinueAfterAClockStepBack) {
   samples.add(Sample{.at = 100});
   samples.add(api::AttentionStep{100, true, "it"});
   samples.move(-50);
-  EXPECT_TRUE(samples.wants(52));
+  EXPECT_TRUE(samples.is_due(52));
   samples.add(Sample{.at = 52});
   EXPECT_THAT(samples.history_after(0).at, ElementsAre(50, 52));
   EXPECT_EQ(samples.history_after(0).attention.front().at, 50);

@@ -136,7 +136,7 @@ TEST_F(ButtonWatchTest, ReleasesItsLine) {
 
 TEST_F(ButtonWatchTest, ContinuesWithAnotherLine) {
   watch();
-  button->let_go();
+  button->release_line();
   EXPECT_FALSE(wire.open);
   button->set_line(std::make_unique<WireLine>(wire));
   set(true);

@@ -33,7 +33,7 @@ TEST(EndpointTest, ComparesADateWithTheTimeOfItsOwnAnswer) {
   tried.post.scoring = {peer.endpoint().address, peer.endpoint().port};
   const EndpointTest::Turns turns;
   std::optional<api::TestStep> step;
-  EndpointTest test(loop, turns, tried, steps::Asked::Scoring,
+  EndpointTest test(loop, turns, tried, steps::EndpointKind::Scoring,
                     [&](api::TestStep each) { step = std::move(each); });
 
   test.check_token();
@@ -61,7 +61,7 @@ TEST(EndpointTest, TriesASlashIfTheStatusIsAWebPage) {
     tried.post.scoring = {peer.endpoint().address, peer.endpoint().port};
     const EndpointTest::Turns turns;
     std::optional<api::TestStep> step;
-    EndpointTest test(loop, turns, tried, steps::Asked::Scoring,
+    EndpointTest test(loop, turns, tried, steps::EndpointKind::Scoring,
                       [&](api::TestStep each) { step = std::move(each); });
     test.check_token();
     ASSERT_TRUE(time.pass_until(loop, [&] { return step.has_value(); }));
@@ -91,7 +91,7 @@ TEST(EndpointTest, TellsAMappingEndpointByItsAnswerToAnUnknownPath) {
     tried.post.mapping = {peer.endpoint().address, peer.endpoint().port};
     const EndpointTest::Turns turns;
     std::optional<api::TestStep> step;
-    EndpointTest test(loop, turns, tried, steps::Asked::Mapping,
+    EndpointTest test(loop, turns, tried, steps::EndpointKind::Mapping,
                       [&](api::TestStep each) { step = std::move(each); });
     test.check_token();
     ASSERT_TRUE(time.pass_until(loop, [&] { return step.has_value(); }));

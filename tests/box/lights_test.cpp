@@ -138,24 +138,24 @@ TEST_F(LightsTest, RetryAFailedPanelWithoutAChange) {
 TEST_F(LightsTest, RepeatAsAHeartbeatIfWatched) {
   WatchedLines::Seen watched{.shown = {}, .is_watched = true};
   be_well();
-  lights.let_go();
+  lights.release_lines();
   lights.set_lines(std::make_unique<WatchedLines>(watched));
   EXPECT_EQ(watched.shown.size(), 1u) << "at once";
   for (int i = 0; i < 3; ++i) {
     time.pass(loop, 1s);
-    lights.beat();
+    lights.send_heartbeat();
   }
   EXPECT_EQ(watched.shown.size(), 4u) << "then only with each beat";
   for (const Lit& lit : watched.shown) EXPECT_EQ(lit, (Lit{true, true, true, false}));
   watched.fail = true;
   const std::size_t before = watched.shown.size();
-  lights.beat();
+  lights.send_heartbeat();
   time.pass(loop, panel::Painter::kAgain);
   EXPECT_EQ(watched.shown.size(), before + 2) << "the write is repeated";
-  lights.let_go();
+  lights.release_lines();
   watched.shown.clear();
   lights.set(LightState::NeedsOperator, true);
-  lights.beat();
+  lights.send_heartbeat();
   time.pass(loop, 1s);
   EXPECT_TRUE(watched.shown.empty());
 }
@@ -163,14 +163,14 @@ TEST_F(LightsTest, RepeatAsAHeartbeatIfWatched) {
 TEST_F(LightsTest, DoNotRepeatUnlessWatched) {
   be_well();
   const std::size_t told = seen.shown.size();
-  lights.beat();
+  lights.send_heartbeat();
   EXPECT_EQ(seen.shown.size(), told);
 }
 
 TEST_F(LightsTest, ShowTheSameOnNewLines) {
   be_well();
   WatchedLines::Seen other;
-  lights.let_go();
+  lights.release_lines();
   lights.set(LightState::NeedsOperator, true);  // the lights cannot be set meanwhile
   lights.set_lines(std::make_unique<WatchedLines>(other));
   EXPECT_EQ(other.shown, (std::vector<Lit>{{true, true, true, true}}));

@@ -56,21 +56,21 @@ TEST_F(LinksTest, AreEmptyWithoutInterfacesInTheSettings) {
 
 TEST_F(LinksTest, ReportTheReturnOfTheCommandPostCable) {
   Links links = make();
-  links.look();
+  links.refresh();
   EXPECT_EQ(changes, 0);
   carriers["darpa0"] = false;
-  links.look();
+  links.refresh();
   EXPECT_EQ(changes, 1);
   EXPECT_EQ(backs, 0);
   EXPECT_EQ(links.rows()[1].carrier, false);
   carriers["darpa0"] = true;
-  links.look();
+  links.refresh();
   EXPECT_EQ(changes, 2);
   EXPECT_EQ(backs, 1);
   carriers["team0"] = false;
-  links.look();
+  links.refresh();
   carriers["team0"] = true;
-  links.look();
+  links.refresh();
   EXPECT_EQ(changes, 4);
   EXPECT_EQ(backs, 1) << "the team's link has no waiting messages";
 }
@@ -116,7 +116,7 @@ TEST_F(LinkEventsTest, PollIfKernelEventsFail) {
   carriers["darpa0"] = false;
   turn();
   EXPECT_EQ(changes, 0) << "a broken socket is not read again";
-  links.look();
+  links.refresh();
   EXPECT_EQ(changes, 1);
 }
 
@@ -124,7 +124,7 @@ TEST_F(LinksTest, FollowTheSettings) {
   Links links = make();
   settings.command_post.interface = "darpa1";
   carriers["darpa1"] = false;
-  links.look_at(settings);
+  links.watch_settings(settings);
   EXPECT_EQ(links.rows()[1].carrier, false);
   EXPECT_EQ(backs, 0);
 }

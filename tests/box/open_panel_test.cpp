@@ -28,7 +28,7 @@ class OpenPanelTest : public testing::Test {
 };
 
 TEST_F(OpenPanelTest, SimulatesThePanelWithoutNamedLines) {
-  const panel::Held opened = open_panel({}, {.socket = "", .folder = folder_.string()});
+  const panel::PanelDevices opened = open_panel({}, {.socket = "", .folder = folder_.string()});
   ASSERT_TRUE(opened.lines->set({true, false, false, false}).has_value());
   EXPECT_TRUE(std::filesystem::exists(folder_ / "panel"));
   ASSERT_NE(opened.button, nullptr);
@@ -41,7 +41,7 @@ TEST_F(OpenPanelTest, SimulatesLightsButNoButtonIfLinesFail) {
   settings.health = "H";
   for (const std::string button : {"", "B"}) {
     settings.button = button;
-    const panel::Held opened = open_panel(settings, {.socket = "", .folder = folder_.string()});
+    const panel::PanelDevices opened = open_panel(settings, {.socket = "", .folder = folder_.string()});
     EXPECT_EQ(opened.lines->set({true, false, false, false}).error(),
               "panel: chip no-such-chip: No such file or directory");
     EXPECT_TRUE(std::filesystem::exists(folder_ / "panel"));

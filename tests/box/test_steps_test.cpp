@@ -25,7 +25,7 @@ TEST(LinkStep, ChecksTheCarrier) {
 }
 
 TEST(AddressStep, FindsAddressConflicts) {
-  network::Probed probed{.nonce = "", .address = "10.100.1.10"};
+  network::ProbeResult probed{.nonce = "", .address = "10.100.1.10"};
   expect(address("darpa0", kOwn, probed, ""), "good",
          "darpa0 has 10.100.1.10/24, without an address conflict");
   probed.address = "10.100.1.11";
@@ -45,7 +45,7 @@ TEST(AddressStep, FindsAddressConflicts) {
 }
 
 TEST(CablesStep, SeeksTheCommandPostAtBothPorts) {
-  network::Probed probed{.nonce = "", .found_on = "darpa0"};
+  network::ProbeResult probed{.nonce = "", .found_on = "darpa0"};
   expect(cables("darpa0", "team0", "10.100.1.200", probed), "good", "10.100.1.200 is at darpa0");
   probed.found_on = "team0";
   expect(cables("darpa0", "team0", "10.100.1.200", probed), "bad",
@@ -75,7 +75,7 @@ TEST(ReachStep, TellsHowConnectingFails) {
   EXPECT_EQ(std::ranges::adjacent_find(advice), advice.end()) << "each step has its own advice";
 }
 
-TestStep with_status(Asked asked, int status, const std::string& body = "\"a sentence\"") {
+TestStep with_status(EndpointKind asked, int status, const std::string& body = "\"a sentence\"") {
   uplink::Answered answered;
   answered.status = status;
   answered.body = body;
@@ -86,34 +86,34 @@ constexpr const char* kRun =
     R"({"score": 1, "run_clock": 2.5, "remaining_reports": 44, "current_team": "subt"})";
 
 TEST(TokenStep, OfScoringReadsTheAnswerToAStatus) {
-  expect(with_status(Asked::Scoring, 200, kRun), "good", "the scoring token is accepted");
+  expect(with_status(EndpointKind::Scoring, 200, kRun), "good", "the scoring token is accepted");
   for (const char* body : {R"({"hello": "world"})", "null", "[]", R"("a sentence")", ""})
-    expect(with_status(Asked::Scoring, 200, body), "bad", "not the status of a run");
-  expect(with_status(Asked::Scoring, 401), "bad", "the scoring token is rejected");
-  expect(with_status(Asked::Scoring, 403), "bad", "the scoring token is rejected");
-  expect(with_status(Asked::Scoring, 404, "<html>"), "bad", "404");
-  expect(with_status(Asked::Scoring, 422), "bad", "422");
-  expect(with_status(Asked::Scoring, 501, ""), "bad", "501");
-  expect(with_status(Asked::Scoring, 429), "skipped", "too many requests");
-  expect(with_status(Asked::Scoring, 500), "skipped", "failed");
-  expect(no_token(Asked::Scoring), "bad", "there is no scoring token");
+    expect(with_status(EndpointKind::Scoring, 200, body), "bad", "not the status of a run");
+  expect(with_status(EndpointKind::Scoring, 401), "bad", "the scoring token is rejected");
+  expect(with_status(EndpointKind::Scoring, 403), "bad", "the scoring token is rejected");
+  expect(with_status(EndpointKind::Scoring, 404, "<html>"), "bad", "404");
+  expect(with_status(EndpointKind::Scoring, 422), "bad", "422");
+  expect(with_status(EndpointKind::Scoring, 501, ""), "bad", "501");
+  expect(with_status(EndpointKind::Scoring, 429), "skipped", "too many requests");
+  expect(with_status(EndpointKind::Scoring, 500), "skipped", "failed");
+  expect(no_token(EndpointKind::Scoring), "bad", "there is no scoring token");
 }
 
 TEST(TokenStep, OfMappingIsGoodIfOnlyTheBodyIsRejected) {
   for (const int status : {200, 201, 400, 415, 422})
-    expect(with_status(Asked::Mapping, status), "good", "is accepted");
+    expect(with_status(EndpointKind::Mapping, status), "good", "is accepted");
   for (const int status : {401, 403})
-    expect(with_status(Asked::Mapping, status), "bad", "the mapping token is rejected");
+    expect(with_status(EndpointKind::Mapping, status), "bad", "the mapping token is rejected");
   for (const int status : {404, 405, 501})
-    expect(with_status(Asked::Mapping, status, ""), "bad", std::to_string(status));
-  EXPECT_THAT(with_status(Asked::Mapping, 404).advice, HasSubstr("no mapping endpoint"));
-  expect(with_status(Asked::Mapping, 429), "skipped", "too many requests");
+    expect(with_status(EndpointKind::Mapping, status, ""), "bad", std::to_string(status));
+  EXPECT_THAT(with_status(EndpointKind::Mapping, 404).advice, HasSubstr("no mapping endpoint"));
+  expect(with_status(EndpointKind::Mapping, 429), "skipped", "too many requests");
 }
 
 TestStep with_statuses(int status, int elsewhere) {
   uplink::Answered answered;
   answered.status = elsewhere;
-  return unknown_path(with_status(Asked::Mapping, status), status, answered);
+  return unknown_path(with_status(EndpointKind::Mapping, status), status, answered);
 }
 
 TEST(TokenStep, OfMappingIsBadIfTheServerAcceptsAnyPath) {
@@ -125,27 +125,28 @@ TEST(TokenStep, OfMappingIsBadIfTheServerAcceptsAnyPath) {
   }
   expect(with_statuses(200, 204), "bad", "accepts any path");
   EXPECT_THAT(with_statuses(422, 422).advice, HasSubstr("compare the mapping address and port"));
-  expect(unknown_path(with_status(Asked::Mapping, 422), 422, uplink::InDoubt{"the peer was silent"}),
+  expect(unknown_path(with_status(EndpointKind::Mapping, 422), 422, uplink::InDoubt{"the peer was silent"}),
          "skipped", "POST /adit-test got no answer");
 }
 
 TEST(TokenStep, TellsAPageFromAnAnswerWithoutABody) {
-  expect(with_status(Asked::Mapping, 200, "<html>"), "bad", "the answer is 200 with a body that is not JSON");
-  expect(with_status(Asked::Mapping, 501, ""), "bad", "the answer is 501 without a body");
-  expect(with_status(Asked::Mapping, 404, R"({"detail": "Not Found"})"), "bad",
+  expect(with_status(EndpointKind::Mapping, 200, "<html>"), "bad",
+         "the answer is 200 with a body that is not JSON");
+  expect(with_status(EndpointKind::Mapping, 501, ""), "bad", "the answer is 501 without a body");
+  expect(with_status(EndpointKind::Mapping, 404, R"({"detail": "Not Found"})"), "bad",
          "the answer is 404: Not Found");
 }
 
 TEST(TokenStep, TellsThatTheEndpointRequiresASlash) {
   const uplink::Answered taken{.status = 200, .content_type = "", .body = kRun, .retry_after = std::nullopt};
-  EXPECT_THAT(token(Asked::Scoring, taken, true).said, HasSubstr("slash"));
-  EXPECT_THAT(token(Asked::Scoring, taken).said, testing::Not(HasSubstr("slash")));
+  EXPECT_THAT(token(EndpointKind::Scoring, taken, true).said, HasSubstr("slash"));
+  EXPECT_THAT(token(EndpointKind::Scoring, taken).said, testing::Not(HasSubstr("slash")));
 }
 
 TEST(TokenStep, TellsWhyNoAnswerCame) {
-  expect(token(Asked::Scoring, uplink::NeverSent{"connecting: Connection refused"}), "bad",
+  expect(token(EndpointKind::Scoring, uplink::NeverSent{"connecting: Connection refused"}), "bad",
          "Connection refused");
-  expect(token(Asked::Mapping, uplink::InDoubt{"the peer was silent"}), "bad", "the peer was silent");
+  expect(token(EndpointKind::Mapping, uplink::InDoubt{"the peer was silent"}), "bad", "the peer was silent");
 }
 
 TEST(ClockStep, AllowsTwoSeconds) {

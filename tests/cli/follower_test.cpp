@@ -35,9 +35,9 @@ class Following {
       : adit_{server.address(), {*icd::BearerToken::parse("sesame-1"), ""}} {}
 
   /// Waits for the next new view.
-  Look next() {
+  FetchResult next() {
     while (true) {
-      if (auto look = follower_.look()) return *std::move(look);
+      if (auto look = follower_.poll()) return *std::move(look);
       const auto left =
           std::chrono::ceil<std::chrono::milliseconds>(follower_.due() - Follower::Clock::now());
       pollfd entry{follower_.fd(), POLLIN, 0};
@@ -46,7 +46,7 @@ class Following {
   }
   /// The number of reports left in the next view, or the message in its place.
   std::string left() {
-    const Look look = next();
+    const FetchResult look = next();
     return look ? std::to_string(look->view.run->remaining_reports) : look.error();
   }
   const Follower& follower() const { return follower_; }
@@ -63,7 +63,7 @@ TEST(Follower, ReadsTheWholeViewAndThenItsChanges) {
   const std::string change = codec::write_json(*codec::patch(sample_view(), now));
   const Server server(stream(whole(sample_view()) + patch(change)), true);
   Following following(server);
-  Look look = following.next();
+  FetchResult look = following.next();
   if (look && look->view.run->remaining_reports == 18) look = following.next();  // they arrived one by one
   ASSERT_TRUE(look) << look.error();
   EXPECT_EQ(codec::write_json(look->told), codec::write_json(codec::parse_json(codec::to_json(now)).value()));

@@ -161,10 +161,10 @@ TEST(Options, BelongToTheirCommands) {
   EXPECT_EQ(parsed({"settings", "show", "reports.review"}).argument(), "reports.review");
   EXPECT_EQ(parsed({"complete", "reports", "settle"}).argument(), "settle");
   EXPECT_EQ(command_of(parsed({"watch", "--json"})), "watch");
-  EXPECT_THAT(help_about(command("reports")),
+  EXPECT_THAT(help_text(command("reports")),
               testing::HasSubstr("without a subcommand: list the reports of this run"));
-  EXPECT_THAT(help_about(command("reports")), testing::HasSubstr("with export: print CSV"));
-  EXPECT_THAT(help_about(command("reports")), testing::HasSubstr("with send: do not ask"));
+  EXPECT_THAT(help_text(command("reports")), testing::HasSubstr("with export: print CSV"));
+  EXPECT_THAT(help_text(command("reports")), testing::HasSubstr("with send: do not ask"));
 }
 
 TEST(Version, IsShownDespiteOtherWords) {
@@ -177,16 +177,16 @@ TEST(Version, IsShownDespiteOtherWords) {
 
 TEST(Help, IsGivenForTheNamedCommand) {
   for (const Words& words : {Words{"--help"}, {"-h"}, {"help"}})
-    EXPECT_EQ(run(words).out, help_about(nullptr));
+    EXPECT_EQ(run(words).out, help_text(nullptr));
   for (const Words& words : {Words{"check", "--help"}, {"help", "check"}, {"check", "--at", "x", "-h"}}) {
-    EXPECT_EQ(run(words).out, help_about(command("check")));
+    EXPECT_EQ(run(words).out, help_text(command("check")));
     EXPECT_EQ(run(words).exit, Exit::Fine);
   }
-  EXPECT_EQ(run(Words{"help", "reports"}).out, help_about(command("reports")));
-  EXPECT_EQ(run(Words{"reports", "send", "--help"}).out, help_about(command("reports")));
-  EXPECT_EQ(run(Words{"help", "run"}).out, help_about(command("run")));
-  EXPECT_EQ(run(Words{"help", "identify"}).out, help_about(command("identify")));
-  EXPECT_EQ(run(Words{"help", "status"}).out, help_about(command("status")));
+  EXPECT_EQ(run(Words{"help", "reports"}).out, help_text(command("reports")));
+  EXPECT_EQ(run(Words{"reports", "send", "--help"}).out, help_text(command("reports")));
+  EXPECT_EQ(run(Words{"help", "run"}).out, help_text(command("run")));
+  EXPECT_EQ(run(Words{"help", "identify"}).out, help_text(command("identify")));
+  EXPECT_EQ(run(Words{"help", "status"}).out, help_text(command("status")));
 }
 
 TEST(Command, WithAFaultNamesItAndTheHelp) {

@@ -66,43 +66,43 @@ TEST(ReportsText, EscapesTerminalSequences) {
 
 TEST(StateText, NamesTheAwaitedDecision) {
   facts::ReportRow doubt = in_state("in_doubt");
-  EXPECT_EQ(life_of(doubt), "in doubt");
+  EXPECT_EQ(report_state(doubt), "in doubt");
   EXPECT_TRUE(needs_the_operator(doubt));
   doubt.asking = true;
-  EXPECT_EQ(life_of(doubt), "in doubt, asking");
+  EXPECT_EQ(report_state(doubt), "in doubt, asking");
   EXPECT_FALSE(needs_the_operator(doubt));
-  EXPECT_EQ(life_of(in_state("held")), "held");
+  EXPECT_EQ(report_state(in_state("held")), "held");
   EXPECT_TRUE(needs_the_operator(in_state("held")));
   facts::ReportRow undoable = in_state("held");
   undoable.sends_at = 1010;
-  EXPECT_EQ(life_of(undoable), "held, to be sent");
+  EXPECT_EQ(report_state(undoable), "held, to be sent");
   EXPECT_FALSE(needs_the_operator(undoable));
 }
 
 TEST(StateText, IsTheWordOfTheState) {
   for (const std::string_view word : dispatch::kStateWords) {
-    if (word != "in_doubt") EXPECT_EQ(life_of(in_state(std::string(word))), word);
+    if (word != "in_doubt") EXPECT_EQ(report_state(in_state(std::string(word))), word);
   }
-  EXPECT_EQ(life_of(in_state("a later one")), "a later one");
+  EXPECT_EQ(report_state(in_state("a later one")), "a later one");
 }
 
 TEST(AnswerText, IsTheAnswerInWords) {
   facts::ReportRow report = in_state("answered");
-  EXPECT_EQ(said_of(report), "scored");
+  EXPECT_EQ(outcome_text(report), "scored");
   report.reconciled = true;
-  EXPECT_EQ(said_of(report), "found out, scored");
+  EXPECT_EQ(outcome_text(report), "found out, scored");
   report = in_state("rejected");
   report.status = 422;
   report.report_status = "";
-  EXPECT_EQ(said_of(report), "error 422");
+  EXPECT_EQ(outcome_text(report), "error 422");
 }
 
 TEST(StateText, IsExplainedInTheHelp) {
   for (const auto& row : dispatch::report_life()) {
     facts::ReportRow report = in_state(std::string(dispatch::name_of(row.from)));
-    EXPECT_THAT(help_of("reports"), HasSubstr("\n  " + life_of(report) + " "));
+    EXPECT_THAT(help_of("reports"), HasSubstr("\n  " + report_state(report) + " "));
     report.reconciled = report.asking = true;
-    EXPECT_THAT(help_of("reports"), HasSubstr("\n  " + life_of(report) + " "));
+    EXPECT_THAT(help_of("reports"), HasSubstr("\n  " + report_state(report) + " "));
   }
 }
 

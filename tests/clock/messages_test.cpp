@@ -49,19 +49,20 @@ TEST(ClockMessages, NtpAcceptsOnlyAddresses) {
 }
 
 TEST(ClockMessages, RequestIsValidForAMinuteOfTheSameBoot) {
-  EXPECT_EQ(hindrance(request(), 100, kStatus), "");
-  EXPECT_EQ(hindrance(request(), 160, kStatus), "");
-  EXPECT_THAT(hindrance(request(), 161, kStatus), HasSubstr("at:"));
-  EXPECT_THAT(hindrance(request(), 99, kStatus), HasSubstr("at:"));
-  EXPECT_THAT(hindrance(request(), 100, {.boot = "c"}), HasSubstr("boot:")) << "a request of an earlier boot";
+  EXPECT_EQ(refusal_reason(request(), 100, kStatus), "");
+  EXPECT_EQ(refusal_reason(request(), 160, kStatus), "");
+  EXPECT_THAT(refusal_reason(request(), 161, kStatus), HasSubstr("at:"));
+  EXPECT_THAT(refusal_reason(request(), 99, kStatus), HasSubstr("at:"));
+  EXPECT_THAT(refusal_reason(request(), 100, {.boot = "c"}), HasSubstr("boot:"))
+      << "a request of an earlier boot";
 }
 
 TEST(ClockMessages, NtpTimeIsValidOnlyFromTheSetServer) {
   Request told = request();
   told.source = Source::Ntp;
   told.server = "10.0.0.5";
-  EXPECT_EQ(hindrance(told, 100, {.boot = "b", .ntp = {.server = "10.0.0.5"}}), "");
-  EXPECT_THAT(hindrance(told, 100, {.boot = "b", .ntp = {.server = "10.0.0.6"}}), HasSubstr("server:"));
+  EXPECT_EQ(refusal_reason(told, 100, {.boot = "b", .ntp = {.server = "10.0.0.5"}}), "");
+  EXPECT_THAT(refusal_reason(told, 100, {.boot = "b", .ntp = {.server = "10.0.0.6"}}), HasSubstr("server:"));
 }
 
 TEST(ClockMessages, FormerNtpServerIsTrustedLikeTheOperator) {
@@ -79,11 +80,11 @@ TEST(ClockMessages, TimesOutOfBoundsAreRejected) {
   for (const double time : {0.0, kEarliest - 1, kLatest, 1e300}) {
     Request wrong = request();
     wrong.time = time;
-    EXPECT_THAT(hindrance(wrong, 100, kStatus), HasSubstr("time:")) << time;
+    EXPECT_THAT(refusal_reason(wrong, 100, kStatus), HasSubstr("time:")) << time;
   }
   Request chip = request();
   chip.source = Source::Chip;
-  EXPECT_THAT(hindrance(chip, 100, kStatus), HasSubstr("source:"))
+  EXPECT_THAT(refusal_reason(chip, 100, kStatus), HasSubstr("source:"))
       << "the chip is read by the program itself";
 }
 

@@ -173,7 +173,7 @@ TEST(CborBody, SkipsValuesUnderATagThatChangesTheMeaning) {
     for (const std::size_t size : {1, 2, 7, 1000000}) {
       for (const Split split : {Split::Nothing, Split::MapData, Split::Lists}) {
         const std::uint64_t tag = hex.starts_with("c2") ? 2 : 4;
-        EXPECT_EQ(before_a_list(hex, size, split), (Value{Value::UnderTag{tag}})) << hex;
+        EXPECT_EQ(before_a_list(hex, size, split), (Value{Value::TaggedValue{tag}})) << hex;
       }
     }
   }
@@ -202,7 +202,7 @@ TEST(CborBody, KeepsValuesUnderATagThatOnlyAnnotates) {
   for (std::uint64_t tag = 0; tag < 70'000; ++tag) {
     const auto document = decode(kCborBody, Split::Nothing, tagged(tag));
     ASSERT_TRUE(document) << tag;
-    ASSERT_EQ(document->root, remarks.contains(tag) ? Value{std::int64_t{0}} : Value{Value::UnderTag{tag}})
+    ASSERT_EQ(document->root, remarks.contains(tag) ? Value{std::int64_t{0}} : Value{Value::TaggedValue{tag}})
         << tag;
   }
 }

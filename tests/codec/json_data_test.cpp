@@ -113,10 +113,10 @@ TEST(JsonData, CanBeTakenInPiecesAndStillCounts) {
   };
   BodyDecoder decoder(kJsonBody, Split::MapData, limits);
   ASSERT_TRUE(feed(decoder, R"({"msg":{"data":")" + std::string(4000, 'A')));
-  EXPECT_EQ(decoder.data_held(), 3000u);
+  EXPECT_EQ(decoder.held_bytes(), 3000u);
   const icd::ChunkedBytes first = decoder.take_data();
   EXPECT_EQ(first.to_string(), std::string(3000, '\0'));
-  EXPECT_EQ(decoder.data_held(), 0u);
+  EXPECT_EQ(decoder.held_bytes(), 0u);
   ASSERT_TRUE(feed(decoder, "////"));
   ASSERT_TRUE(feed(decoder, "\"}}"));
   const auto document = decoder.finish();

@@ -43,7 +43,7 @@ TEST(Json, IsWrittenOnOneLineAndReadsBackTheSame) {
 TEST(Json, WritesNullForValuesThatJsonLacks) {
   Value::Array array;
   array.push_back({Value::Bytes{{1, 2}}});
-  array.push_back({Value::UnderTag{2}});
+  array.push_back({Value::TaggedValue{2}});
   array.push_back({Value::SplitOut{}});
   array.push_back({std::numeric_limits<double>::infinity()});
   array.push_back({std::numeric_limits<double>::quiet_NaN()});
@@ -67,7 +67,7 @@ TEST(Value, TellsItsKindInASentence) {
       {{1.0}, "a number"},
       {{std::string()}, "a string"},
       {{Value::Bytes{}}, "a byte string"},
-      {{Value::UnderTag{4}}, "CBOR tag 4, which changes the meaning of its value"},
+      {{Value::TaggedValue{4}}, "CBOR tag 4, which changes the meaning of its value"},
       {{Value::SplitOut{}}, "split-out bytes"},
       {{Value::Array{}}, "an array"},
       {{Value::Object{}}, "an object"}};

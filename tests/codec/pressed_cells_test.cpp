@@ -171,7 +171,7 @@ TEST(PressedCells, AreTheSameIfTakenInPieces) {
        left.remove_prefix(std::min<std::size_t>(left.size(), 50'000))) {
     const std::string_view some = left.substr(0, 50'000);
     ASSERT_TRUE(decoder.feed({reinterpret_cast<const std::uint8_t*>(some.data()), some.size()}));
-    EXPECT_LE(decoder.data_held(), 100'000u);
+    EXPECT_LE(decoder.held_bytes(), 100'000u);
     data.append(decoder.take_data());
   }
   EXPECT_GT(data.size(), 100'000u);

@@ -20,7 +20,7 @@ Program program_of(Options& options) {
   return {.name = "it",
           .usage = "[quick]",
           .about = "Does what it says.\n\n  kept    as it is\nAnd more.",
-          .rows = {{"--file", "FILE", "what to do it with", &options.file, Wanted::Always},
+          .rows = {{"--file", "FILE", "what to do it with", &options.file, Presence::Required},
                    {"--folder", "DIR",
                     "where it is done; and this sentence is so long that it has to go on in a "
                     "second line",
@@ -103,7 +103,7 @@ TEST(CommandLine, IsRejectedWithItsWord) {
 TEST(CommandLine, MayHaveEmptyValuesAndFreeWords) {
   Options options;
   Program program = program_of(options);
-  program.empty = Empty::Taken;
+  program.empty = EmptyValue::Accepted;
   std::string words;
   program.word = set_by<[](std::string& all, const std::string& word) -> Wrong {
     all += word;

@@ -16,16 +16,18 @@ Instant at(double s) {
 /// An answer was lost at 0 s, when the run clock showed 500 s.
 class InquiryTest : public testing::Test {
  protected:
-  Finding hear(double now, Finding finding) { return hear(now, finding, 500 + now); }
-  Finding hear(double now, Finding finding, double run_clock) { return hear(now, finding, run_clock, now); }
-  Finding hear(double now, Finding finding, double run_clock, double asked) {
-    return inquiry_.hear({.finding = finding, .why = "", .points_each = std::nullopt}, run_clock, at(asked),
-                         at(now));
+  Finding add_evidence(double now, Finding finding) { return add_evidence(now, finding, 500 + now); }
+  Finding add_evidence(double now, Finding finding, double run_clock) {
+    return add_evidence(now, finding, run_clock, now);
+  }
+  Finding add_evidence(double now, Finding finding, double run_clock, double asked) {
+    return inquiry_.add_evidence({.finding = finding, .why = "", .points_each = std::nullopt}, run_clock,
+                                 at(asked), at(now));
   }
   /// One status each second. Returns the last finding.
   Finding hear_from(int from, int to, Finding finding) {
     Finding last = Finding::Silent;
-    for (int now = from; now <= to; ++now) last = hear(now, finding);
+    for (int now = from; now <= to; ++now) last = add_evidence(now, finding);
     return last;
   }
 
@@ -33,48 +35,49 @@ class InquiryTest : public testing::Test {
 };
 
 TEST_F(InquiryTest, BelievesRecordedAtTheSecondStatus) {
-  EXPECT_EQ(hear(1, Finding::Recorded), Finding::Silent);
-  EXPECT_EQ(hear(2, Finding::Recorded), Finding::Recorded);
+  EXPECT_EQ(add_evidence(1, Finding::Recorded), Finding::Silent);
+  EXPECT_EQ(add_evidence(2, Finding::Recorded), Finding::Recorded);
 }
 
 TEST_F(InquiryTest, BelievesNotRecordedAfterTenSeconds) {
   EXPECT_EQ(hear_from(1, 9, Finding::NotRecorded), Finding::Silent);
-  EXPECT_EQ(hear(10, Finding::NotRecorded), Finding::NotRecorded);
+  EXPECT_EQ(add_evidence(10, Finding::NotRecorded), Finding::NotRecorded);
 }
 
 /// The status may be as old as its request, and the report recorded since.
 TEST_F(InquiryTest, DatesAStatusByItsRequest) {
   hear_from(1, 5, Finding::NotRecorded);
-  EXPECT_EQ(hear(12, Finding::NotRecorded, 512, 6), Finding::Silent);
-  EXPECT_EQ(hear(13, Finding::NotRecorded, 513, 12), Finding::NotRecorded);
+  EXPECT_EQ(add_evidence(12, Finding::NotRecorded, 512, 6), Finding::Silent);
+  EXPECT_EQ(add_evidence(13, Finding::NotRecorded, 513, 12), Finding::NotRecorded);
 }
 
 TEST_F(InquiryTest, BelievesNotRecordedAfterThreeStatusesInARow) {
-  EXPECT_EQ(hear(11, Finding::NotRecorded), Finding::Silent);
-  EXPECT_EQ(hear(12, Finding::NotRecorded), Finding::Silent);
-  EXPECT_EQ(hear(13, Finding::NotRecorded), Finding::NotRecorded);
+  EXPECT_EQ(add_evidence(11, Finding::NotRecorded), Finding::Silent);
+  EXPECT_EQ(add_evidence(12, Finding::NotRecorded), Finding::Silent);
+  EXPECT_EQ(add_evidence(13, Finding::NotRecorded), Finding::NotRecorded);
 }
 
 TEST_F(InquiryTest, StartsAgainIfStatusesDisagree) {
   hear_from(1, 9, Finding::NotRecorded);
-  EXPECT_EQ(hear(10, Finding::Recorded), Finding::Silent);
-  EXPECT_EQ(hear(11, Finding::NotRecorded), Finding::Silent);
-  EXPECT_EQ(hear(12, Finding::Silent), Finding::Silent);
+  EXPECT_EQ(add_evidence(10, Finding::Recorded), Finding::Silent);
+  EXPECT_EQ(add_evidence(11, Finding::NotRecorded), Finding::Silent);
+  EXPECT_EQ(add_evidence(12, Finding::Silent), Finding::Silent);
   EXPECT_EQ(hear_from(13, 14, Finding::NotRecorded), Finding::Silent);
-  EXPECT_EQ(hear(15, Finding::NotRecorded), Finding::NotRecorded);
+  EXPECT_EQ(add_evidence(15, Finding::NotRecorded), Finding::NotRecorded);
 }
 
 TEST_F(InquiryTest, BelievesAContradictionAtOnce) {
-  EXPECT_EQ(hear(1, Finding::Contradicts), Finding::Contradicts);
+  EXPECT_EQ(add_evidence(1, Finding::Contradicts), Finding::Contradicts);
 }
 
 TEST_F(InquiryTest, DoubtsNotRecordedWhileTheRunClockStands) {
-  for (int now = 1; now <= 30; ++now) EXPECT_EQ(hear(now, Finding::NotRecorded, 501), Finding::Silent);
+  for (int now = 1; now <= 30; ++now)
+    EXPECT_EQ(add_evidence(now, Finding::NotRecorded, 501), Finding::Silent);
 }
 
 TEST_F(InquiryTest, BelievesRecordedWhileTheRunClockStands) {
-  EXPECT_EQ(hear(1, Finding::Recorded, 501), Finding::Silent);
-  EXPECT_EQ(hear(9, Finding::Recorded, 501), Finding::Recorded);
+  EXPECT_EQ(add_evidence(1, Finding::Recorded, 501), Finding::Silent);
+  EXPECT_EQ(add_evidence(9, Finding::Recorded, 501), Finding::Recorded);
 }
 
 TEST_F(InquiryTest, AsksEverySecond) {
@@ -89,7 +92,7 @@ TEST_F(InquiryTest, AsksOnceMoreWhenItsTimeIsOverSoThatTheOperatorMayDecideThen)
   EXPECT_EQ(inquiry_.next_ask(at(15.1)), at(15.5));
   inquiry_.on_asked(at(15.5));
   inquiry_.on_failed(at(15.5));
-  EXPECT_TRUE(inquiry_.is_in_vain());
+  EXPECT_TRUE(inquiry_.has_timed_out());
   EXPECT_EQ(inquiry_.next_ask(at(16)), at(25.5));
 }
 
@@ -99,10 +102,10 @@ TEST_F(InquiryTest, BlocksOtherReportsWhileItIsPending) {
 }
 
 TEST_F(InquiryTest, BlocksLongerIfTheLastStatusHelps) {
-  hear(14, Finding::NotRecorded);
+  add_evidence(14, Finding::NotRecorded);
   EXPECT_TRUE(inquiry_.is_pending(at(18.9)));
   EXPECT_FALSE(inquiry_.is_pending(at(19)));
-  hear(20, Finding::Silent);
+  add_evidence(20, Finding::Silent);
   EXPECT_FALSE(inquiry_.is_pending(at(20)));
 }
 
@@ -117,7 +120,7 @@ struct EvidenceCase {
   icd::RunStatus before;
   std::int64_t doubts;
   std::int64_t beside;
-  SentSince since;
+  LaterReports since;
   icd::RunStatus now;
   Finding finding;
   std::optional<std::int64_t> points_each;

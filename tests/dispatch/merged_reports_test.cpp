@@ -29,7 +29,7 @@ void blank(Scene& scene) {
   scene.restart();
 }
 
-void restart_with(Scene& scene, const TakeOver& taken) {
+void restart_with(Scene& scene, const TakeoverChanges& taken) {
   for (const TakenOverReport& each : taken.reports) scene.output().ledger[each.report.number] = each.report;
   for (const Run& run : taken.runs) scene.output().runs[run.number] = run;
   scene.restart();
@@ -41,8 +41,8 @@ class TakeOverTest : public testing::Test {
   TakeOverTest() { blank(spare); }
 
   static void take_over(Scene& from, Scene& to, const std::optional<icd::RunStatus>& expected) {
-    const TakeOver taken = dispatch::take_over(books_of(to), books_of(from),
-                                               {.expected = expected, .stamp = to.time().stamp, .ahead = 0});
+    const TakeoverChanges taken = dispatch::take_over(
+        books_of(to), books_of(from), {.expected = expected, .stamp = to.time().stamp, .ahead = 0});
     for (const TakenOverReport& each : taken.reports) {
       const auto here = to.output().ledger.find(each.report.number);
       const double received = here == to.output().ledger.end() ? each.report.received : here->second.received;
@@ -59,7 +59,7 @@ TEST_F(TakeOverTest, KeepsAnswersOfTheFirstBox) {
   first.post(1);
   first.answer(recorded_answer(1));
   take_over();
-  spare.hear(19, 1);
+  spare.receive_status(19, 1);
   const ClientId again = spare.post(1);
   EXPECT_EQ(spare.answer_to(again).status, 201);
   EXPECT_EQ(spare.answer_to(again).body, first.report(1).answer);
@@ -75,7 +75,7 @@ TEST_F(TakeOverTest, HoldsAReportThatTheFirstBoxCorrected) {
   ASSERT_EQ(first.send_next(), 2);
   first.answer(recorded_answer(1));
   take_over();
-  spare.hear(19, 1);
+  spare.receive_status(19, 1);
   EXPECT_EQ(spare.state(1), Held);
   EXPECT_EQ(spare.send_next(), 0);
   EXPECT_EQ(spare.report(2).same_as, 3) << "numbers of this box";
@@ -170,7 +170,7 @@ TEST_F(TakeOverTest, SendsReportsQueuedAtTheSpare) {
   first.post(1);
   first.answer(recorded_answer());
   take_over(first, other, first.reports().expected_status(first.time().now));
-  other.hear(19, 0);
+  other.receive_status(19, 0);
   EXPECT_EQ(other.send_next(), 1);
   EXPECT_EQ(other.report(2).report.position.x, 1) << "a free number";
 }
@@ -198,7 +198,7 @@ TEST_F(TakeOverTest, SendsAReportThatADifferentRunHad) {
   first.post(2);
   first.answer(recorded_answer(0, "scored", "today"));
   take_over(first, other, first.reports().expected_status(first.time().now));
-  other.hear(19, 0);
+  other.receive_status(19, 0);
   const ClientId again = other.post(1);
   EXPECT_FALSE(other.is_answered(again)) << "sent in today's run";
   EXPECT_NE(other.reports().sending(), nullptr);
@@ -214,7 +214,7 @@ TEST_F(TakeOverTest, WorksInTheOtherDirectionLater) {
   spare.repeat_status(12, 19, 0);
   ASSERT_EQ(spare.send_next(), 2);
   spare.answer(recorded_answer());
-  spare.hear(18, 0);
+  spare.receive_status(18, 0);
   spare.post(3);
   spare.answer(recorded_answer());
   first.wait(60);
@@ -222,7 +222,7 @@ TEST_F(TakeOverTest, WorksInTheOtherDirectionLater) {
   EXPECT_EQ(first.state(1), Answered);
   EXPECT_EQ(first.state(2), Answered) << "the spare sent it";
   EXPECT_EQ(first.state(3), Answered);
-  first.hear(17, 0);
+  first.receive_status(17, 0);
   EXPECT_EQ(first.answer_to(first.post(2)).status, 201);
   EXPECT_EQ(first.count(), 3U);
 }
@@ -232,10 +232,10 @@ TEST_F(TakeOverTest, ToleratesAClockOffset) {
   first.post(1);
   first.answer(recorded_answer());
   spare.set_box_clock_forward(7200);
-  const TakeOver taken = dispatch::take_over(books_of(spare), books_of(first),
-                                             {.stamp = spare.time().stamp, .ahead = 7200 - 40});
+  const TakeoverChanges taken = dispatch::take_over(books_of(spare), books_of(first),
+                                                    {.stamp = spare.time().stamp, .ahead = 7200 - 40});
   restart_with(spare, taken);
-  spare.hear(19, 0, 145);
+  spare.receive_status(19, 0, 145);
   EXPECT_EQ(spare.answer_to(spare.post(1)).status, 201);
 }
 
@@ -246,7 +246,7 @@ TEST_F(TakeOverTest, IgnoresAnOlderExport) {
   spare.repeat_status(12, 20, 0);
   ASSERT_EQ(spare.send_next(), 1);
   spare.answer(recorded_answer());
-  const TakeOver taken = dispatch::take_over(books_of(spare), before, {.stamp = spare.time().stamp});
+  const TakeoverChanges taken = dispatch::take_over(books_of(spare), before, {.stamp = spare.time().stamp});
   EXPECT_THAT(taken.reports, IsEmpty());
 }
 
@@ -260,7 +260,7 @@ class World {
     const auto expected = first_.reports().expected_status(first_.time().now);
     if (chance(3)) wake_first_box();
     Books here, there = books_of(first_);
-    const TakeOver taken = dispatch::take_over(
+    const TakeoverChanges taken = dispatch::take_over(
         here, there, {.expected = chance(2) ? expected : std::nullopt, .stamp = spare_.time().stamp});
     restart_with(spare_, taken);
     for (int second = 0; second < 90; ++second) live_at_spare();
@@ -293,7 +293,7 @@ class World {
     if (arrives) record(*sending);
     if (chance(2)) return;  // still in flight
     if (arrives && chance(2)) return first_.answer(recorded_answer(0));
-    first_.lose();
+    first_.lose_answer();
   }
 
   /// The first box was started again and sent some queued reports.
@@ -305,7 +305,7 @@ class World {
 
   void live_at_spare() {
     spare_.wait(1);
-    if (spare_.reports().sending() == nullptr) spare_.hear(left(), 0);
+    if (spare_.reports().sending() == nullptr) spare_.receive_status(left(), 0);
     if (spare_.send_next() == 0) return;
     record(*spare_.reports().sending());
     spare_.answer(recorded_answer(0));

@@ -32,7 +32,7 @@ TEST(ChangeOfCommandPost, KeepsOpenReportsForTheOldOne) {
             "for the run at 10.100.1.200:8000, and sends them to the new Command Post only on request");
   scene.send_next();
   EXPECT_THAT(meaning(scene), HasSubstr("; 1 report is in doubt, 1 is held: "));
-  scene.lose();
+  scene.lose_answer();
   scene.post_queued(3);
   scene.post_queued(4);
   EXPECT_THAT(meaning(scene), HasSubstr("; 2 reports are queued, 1 is in doubt, 1 is held: "));
@@ -44,7 +44,7 @@ TEST(ChangeOfCommandPost, ContinuesTheRunOfAnEarlierOne) {
   scene.answer(recorded_answer());
   scene.post_queued(2);
   scene.restart(kThere);
-  scene.hear(20, 0);
+  scene.receive_status(20, 0);
   EXPECT_EQ(meaning(scene, kHere),
             "reports go to 10.100.1.200:8000 from then on; run 1 there continues, with 2 reports; no report "
             "is queued, in doubt or held now");

@@ -33,9 +33,9 @@ TEST(A2xx, WithoutAReportPutsTheReportInDoubt) {
   scene.answer({200, "text/html", "<html>log in</html>"});
   EXPECT_EQ(scene.state(1), InDoubt);
   EXPECT_FALSE(scene.is_answered(client));
-  scene.hear(19, 0);
+  scene.receive_status(19, 0);
   scene.wait(1);
-  scene.hear(19, 0);
+  scene.receive_status(19, 0);
   EXPECT_EQ(scene.answer_to(client).status, 201);
 }
 
@@ -52,7 +52,7 @@ TEST(A2xx, OfAnotherReportPutsTheReportInDoubt) {
   Scene scene;
   scene.post(10);
   scene.answer(answer_about(10));
-  scene.hear(19, 0);
+  scene.receive_status(19, 0);
   scene.wait(1);
   const ClientId client = scene.post(11);
   scene.answer(answer_about(10));
@@ -72,7 +72,7 @@ TEST(A2xx, OfAStrangeReportLeavesTheCountsUncertain) {
   scene.answer(answer_about(500));
   EXPECT_EQ(scene.state(1), Answered);
   EXPECT_FALSE(scene.reports().expected_status(scene.time().now)) << "its score is another report's";
-  scene.hear(19, 0);
+  scene.receive_status(19, 0);
   EXPECT_TRUE(scene.reports().expected_status(scene.time().now));
 }
 
@@ -129,31 +129,31 @@ TEST(A401, LeavesTheReportQueuedUntilAStatusIsAnswered) {
   EXPECT_FALSE(scene.is_answered(other));
   EXPECT_EQ(scene.send_next(), 0);
   EXPECT_EQ(scene.reports().next_requests(scene.time()).status, scene.time().now);
-  scene.reports().status_failed(NoStatus::Other, scene.time());
+  scene.reports().on_status_failed(NoStatus::Other, scene.time());
   EXPECT_EQ(scene.send_next(), 0);
-  scene.hear(20, 0);
+  scene.receive_status(20, 0);
   EXPECT_EQ(scene.send_next(), 1);
 }
 
 TEST(APageForAStatus, HoldsReportsBackUntilAStatusIsAnswered) {
   Scene scene;
-  scene.reports().status_failed(NoStatus::Page, scene.time());
+  scene.reports().on_status_failed(NoStatus::Page, scene.time());
   scene.post(1);
   scene.post(2, "Drill", /*resubmit=*/true);
   EXPECT_EQ(scene.state(1), Queued) << "although a status proves the run";
   EXPECT_EQ(scene.send_next(), 0);
   EXPECT_EQ(scene.reports().next_requests(scene.time()).status, scene.time().now);
   scene.wait(20);
-  scene.reports().status_failed(NoStatus::Page, scene.time());
+  scene.reports().on_status_failed(NoStatus::Page, scene.time());
   EXPECT_EQ(scene.send_next(), 0);
-  scene.hear(20, 0);
+  scene.receive_status(20, 0);
   EXPECT_EQ(scene.send_next(), 1);
 }
 
 TEST(APageForAStatus, HoldsNoReportThatTheOperatorSends) {
   Scene scene;
   scene.wait(20);
-  scene.reports().status_failed(NoStatus::Page, scene.time());
+  scene.reports().on_status_failed(NoStatus::Page, scene.time());
   scene.post(1);
   scene.post(2);
   ASSERT_TRUE(scene.reports().hold(2, scene.time()));
@@ -161,18 +161,18 @@ TEST(APageForAStatus, HoldsNoReportThatTheOperatorSends) {
   EXPECT_EQ(scene.send_next(), 2);
   scene.answer({200, "text/html", "<html>"});
   EXPECT_EQ(scene.state(2), InDoubt);
-  scene.hear(20, 0);
-  scene.reports().status_failed(NoStatus::Page, scene.time());
+  scene.receive_status(20, 0);
+  scene.reports().on_status_failed(NoStatus::Page, scene.time());
   EXPECT_EQ(scene.send_next(), 0) << "the order was for the page before";
 }
 
 TEST(AnotherFailureOfTheStatus, DelaysNoYoungReport) {
   Scene scene;
   scene.wait(20);
-  scene.reports().status_failed(NoStatus::Page, scene.time());
+  scene.reports().on_status_failed(NoStatus::Page, scene.time());
   scene.post(1);
   EXPECT_EQ(scene.send_next(), 0);
-  scene.reports().status_failed(NoStatus::Other, scene.time());
+  scene.reports().on_status_failed(NoStatus::Other, scene.time());
   EXPECT_EQ(scene.send_next(), 1);
 }
 
@@ -199,7 +199,7 @@ TEST(A500, LeavesTheReportInDoubt) {
 TEST(NoByteLeft, LeavesTheReportQueued) {
   Scene scene;
   const ClientId client = scene.post();
-  scene.reports().never_left("connecting to 10.100.1.200:8000: Connection refused", scene.time());
+  scene.reports().on_never_sent("connecting to 10.100.1.200:8000: Connection refused", scene.time());
   EXPECT_EQ(scene.state(1), Queued);
   EXPECT_EQ(scene.report(1).tries, 0);
   EXPECT_FALSE(scene.is_answered(client));
@@ -229,13 +229,13 @@ TEST(UnansweredReport, HasFiveMoreTriesIfTheOperatorSendsIt) {
   Scene scene;
   scene.post();
   for (int i = 0; i < 5; ++i) {
-    scene.lose();
+    scene.lose_answer();
     scene.repeat_status(10, 20, 0);
     scene.send_next();
   }
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
   ASSERT_EQ(scene.send_next(), 1);
-  scene.lose();
+  scene.lose_answer();
   scene.repeat_status(10, 20, 0);
   EXPECT_EQ(scene.send_next(), 1);
 }

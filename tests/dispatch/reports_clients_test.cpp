@@ -73,13 +73,13 @@ TEST(WaitingClient, MayRepostAHeldReportOfAnEarlierRun) {
   Scene scene;
   const ClientId client = scene.post_queued(1);
   scene.wait(11);
-  scene.hear(25, 0, 3);
+  scene.receive_status(25, 0, 3);
   ASSERT_EQ(scene.state(1), Held);
   scene.wait(9);
   EXPECT_EQ(scene.answer_to(client).status, 503);
   EXPECT_THAT(scene.answer_to(client).sentence, Not(HasSubstr(kNeverTwice)));
   EXPECT_THAT(scene.answer_to(client).sentence, HasSubstr("post it again to send it in the present run"));
-  scene.hear(25, 0, 12);
+  scene.receive_status(25, 0, 12);
   scene.post(1);
   EXPECT_EQ(scene.state(2), Sending) << "as promised";
 }
@@ -94,9 +94,9 @@ TEST(WaitingClient, OfARepeatWaitsForTheFirstReportWithinItsTime) {
   const ClientId repeat = scene.post(1);  // compared later, because the run is unknown
   const auto deadline = scene.time().now + seconds(60);
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
-  scene.hear(20, 0);
+  scene.receive_status(20, 0);
   ASSERT_EQ(scene.send_next(), 1);
-  scene.lose();
+  scene.lose_answer();
   scene.repeat_stop(16, 117);
   scene.send_next();
   ASSERT_EQ(scene.report(2).same_as, 1);

@@ -13,11 +13,11 @@ using testing::HasSubstr;
 class StandingClocks : public testing::Test {
  protected:
   StandingClocks() {
-    hear(20);
+    receive_status(20);
     record(1);
-    hear(19);
+    receive_status(19);
   }
-  void hear(std::int64_t remaining) { scene_.hear(remaining, 0, 25.98); }
+  void receive_status(std::int64_t remaining) { scene_.receive_status(remaining, 0, 25.98); }
   void record(double x) {
     scene_.post(x);
     scene_.answer(recorded_answer(0, "scored", "1", 3.14));
@@ -35,7 +35,7 @@ TEST_F(StandingClocks, GiveARepeatTheRecordedAnswer) {
 TEST_F(StandingClocks, AreOneRunAcrossARestart) {
   scene_.restart();
   scene_.wait(3600);
-  hear(19);
+  receive_status(19);
   scene_.post(1);
   EXPECT_EQ(scene_.count(), 1u);
   EXPECT_EQ(scene_.reports().run().number, 1);
@@ -48,10 +48,10 @@ class ClockSetBack : public testing::Test {
     scene_.record(1, "1");
     for (int i = 0; i < 2; ++i) {
       scene_.wait(1);
-      scene_.hear(19, 0);
+      scene_.receive_status(19, 0);
     }
     scene_.wait(3);
-    scene_.hear(19, 0, 3);
+    scene_.receive_status(19, 0, 3);
   }
   Scene scene_;
 };
@@ -70,7 +70,7 @@ TEST_F(ClockSetBack, MakesANewRunLikelyAndHoldsARepeat) {
 
 TEST_F(ClockSetBack, HoldsARepeatAfterARestart) {
   scene_.restart();
-  scene_.hear(19, 0, 4);
+  scene_.receive_status(19, 0, 4);
   scene_.post(1);
   EXPECT_EQ(scene_.state(2), Held);
 }
@@ -79,7 +79,7 @@ TEST_F(ClockSetBack, HoldsARepeatPostedBeforeTheRunIsKnown) {
   scene_.wait(16);
   scene_.post(1);
   EXPECT_EQ(scene_.state(2), Queued);
-  scene_.hear(19, 0, 20);
+  scene_.receive_status(19, 0, 20);
   EXPECT_EQ(scene_.send_next(), 0);
   EXPECT_EQ(scene_.state(2), Held);
   EXPECT_EQ(scene_.report(2).same_as, 1);
@@ -104,12 +104,12 @@ class ClockSetBackTwice : public ClockSetBack {
  protected:
   ClockSetBackTwice() {
     scene_.post(2);
-    scene_.lose();
+    scene_.lose_answer();
     for (int i = 0; i < 15; ++i) {
       scene_.wait(1);
-      scene_.hear(18, 0, 4 + i);
+      scene_.receive_status(18, 0, 4 + i);
     }
-    scene_.hear(18, 0, 3);
+    scene_.receive_status(18, 0, 3);
   }
 };
 
@@ -136,7 +136,7 @@ TEST_F(ClockSetBackTwice, MayBeTheSecondRunIfAnAnswerNamesAnother) {
 TEST_F(ClockSetBack, HoldsTheRepeatIfMoreReportsAreLeft) {
   scene_.post(1);
   scene_.wait(1);
-  scene_.hear(25, 0, 4);
+  scene_.receive_status(25, 0, 4);
   EXPECT_EQ(scene_.reports().run().number, 2) << "the clock goes on";
   EXPECT_EQ(scene_.send_next(), 0);
   scene_.record(2, "1");
@@ -144,10 +144,10 @@ TEST_F(ClockSetBack, HoldsTheRepeatIfMoreReportsAreLeft) {
 }
 
 TEST_F(ClockSetBack, TrustsTheCountAgainIfMoreReportsAreLeft) {
-  scene_.hear(25, 0, 4);
+  scene_.receive_status(25, 0, 4);
   for (int i = 0; i < 3; ++i) {
     scene_.wait(1);
-    scene_.hear(25, 0, 5 + i);
+    scene_.receive_status(25, 0, 5 + i);
   }
   EXPECT_EQ(scene_.reports().run().unreliable, "") << "no other sender";
 }
@@ -171,14 +171,14 @@ TEST(DoubtAndClockSetBack, DoesNotResendAReportThatTheOperatorSent) {
   scene.post(7);
   scene.answer(recorded_answer(0, "scored", "1"));
   scene.wait(1);
-  scene.hear(19, 0);
+  scene.receive_status(19, 0);
   scene.post(1);
-  scene.lose();
+  scene.lose_answer();
   for (int i = 0; i < 40; ++i) {
     scene.wait(1);
-    scene.hear(19, 0, 102);
+    scene.receive_status(19, 0, 102);
   }
-  scene.hear(19, 0, 3);
+  scene.receive_status(19, 0, 3);
   ASSERT_EQ(scene.reports().run().number, 2);
   scene.post(1);
   ASSERT_EQ(scene.state(3), Held);
@@ -196,7 +196,7 @@ TEST(DoubtAndClockSetBack, DoesNotResendAReportThatTheOperatorSent) {
 TEST_F(ClockSetBack, KeepsTheOldRunAfterARestart) {
   scene_.record(2, "1");
   scene_.restart();
-  scene_.hear(18, 0, 5);
+  scene_.receive_status(18, 0, 5);
   EXPECT_EQ(scene_.reports().run().number, 1);
   scene_.post(2);
   scene_.post(1);

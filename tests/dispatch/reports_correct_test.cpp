@@ -90,12 +90,12 @@ TEST_F(Correction, AnswersTheWaitingClient) {
 TEST_F(Correction, SurvivesARestart) {
   ASSERT_TRUE(correct(1, 5));
   scene_.restart();
-  scene_.hear(20, 0);
+  scene_.receive_status(20, 0);
   const ClientId again = scene_.post(1);
   send(2, recorded_answer(1));
   EXPECT_EQ(scene_.answer_to(again).status, 201);
   scene_.restart();
-  scene_.hear(19, 1);
+  scene_.receive_status(19, 1);
   EXPECT_EQ(scene_.answer_to(scene_.post(1)).number, 2);
   EXPECT_EQ(scene_.send_next(), 0);
 }
@@ -130,7 +130,7 @@ TEST_F(Correction, RequiresAHeldReport) {
   EXPECT_EQ(correct(2, 6).error(), "report 2 is queued: only a held report can be corrected");
   ASSERT_EQ(scene_.send_next(), 2);
   EXPECT_EQ(correct(2, 6).error(), "report 2 is sending: only a held report can be corrected");
-  scene_.lose();
+  scene_.lose_answer();
   EXPECT_EQ(correct(2, 6).error(), "report 2 is in doubt: only a held report can be corrected");
   EXPECT_EQ(correct(7, 6).error(), "there is no report 7");
 }
@@ -152,7 +152,7 @@ TEST_F(Correction, IsRejectedIfTheSameReportExists) {
 TEST_F(Correction, MovesAReportOfAnEarlierRunIntoThisOne) {
   scene_.wait(20);
   scene_.reports().declare_new_run(scene_.time());
-  scene_.hear(20, 0);
+  scene_.receive_status(20, 0);
   ASSERT_TRUE(correct(1, 5));
   send(2, recorded_answer(1));
   EXPECT_EQ(scene_.answer_to(scene_.post(1)).number, 2);

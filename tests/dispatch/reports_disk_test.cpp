@@ -59,7 +59,7 @@ TEST_F(FullDisk, KeepsAnAnswerAndANewRunOverAChangeOfTheCommandPost) {
   fill();
   scene_.answer(recorded_answer(1));
   scene_.wait(1);
-  scene_.hear(25, 0, 0.5);  // another run
+  scene_.receive_status(25, 0, 0.5);  // another run
   const std::int64_t run = scene_.reports().run().number;
   scene_.move_to("10.100.2.200:8000");
   EXPECT_EQ(scene_.state(1), Answered);
@@ -74,7 +74,7 @@ TEST_F(FullDisk, KeepsAnAnswerAndANewRunOverAChangeOfTheCommandPost) {
 
 TEST_F(FullDisk, ResendsNoReportThatIsNotStoredAsQueued) {
   scene_.post();
-  scene_.lose();
+  scene_.lose_answer();
   fill();
   scene_.repeat_status(20, 20, 0);
   EXPECT_EQ(scene_.state(1), InDoubt);
@@ -88,7 +88,7 @@ TEST_F(FullDisk, BeginsANewRunAndWritesItLater) {
   scene_.post_queued();
   scene_.wait(11);
   fill();
-  scene_.hear(25, 0, 3);
+  scene_.receive_status(25, 0, 3);
   EXPECT_EQ(scene_.reports().run().number, 2);
   EXPECT_EQ(scene_.state(1), Held);
   make_room();
@@ -99,7 +99,7 @@ TEST_F(FullDisk, BeginsANewRunAndWritesItLater) {
 
 TEST_F(FullDisk, RejectsTheOperatorsActions) {
   scene_.post(1);
-  scene_.lose();
+  scene_.lose_answer();
   scene_.post(2);
   fill();
   EXPECT_THAT(scene_.reports().settle(1, scene_.time()).error(), HasSubstr("could not be stored"));
@@ -119,7 +119,7 @@ TEST(FillingDisk, NeverSendsAReportTwice) {
     const bool left = scene.reports().sending() != nullptr;
     EXPECT_EQ(left, writes >= 1);
     EXPECT_EQ(scene.answer_to(client).status, left ? 0 : 503);
-    if (left) scene.lose();
+    if (left) scene.lose_answer();
     scene.repeat_status(2, left ? 19 : 20, 0);
     scene.output().writes_until_full = -1;
     scene.restart();

@@ -15,11 +15,11 @@ using testing::StartsWith;
 /// A report was lost at 100 s. 20 reports were left, and the score was 0.
 class Doubt : public testing::Test {
  protected:
-  Doubt() : client_(scene_.post(1)) { scene_.lose(); }
+  Doubt() : client_(scene_.post(1)) { scene_.lose_answer(); }
   void repeat_status_after_stop(int times, std::int64_t remaining, std::int64_t score) {
     for (int i = 0; i < times; ++i) {
       scene_.wait(1);
-      scene_.hear(remaining, score, clock_++);
+      scene_.receive_status(remaining, score, clock_++);
     }
   }
 
@@ -29,10 +29,10 @@ class Doubt : public testing::Test {
 };
 
 TEST_F(Doubt, IsSettledByTwoStatusesThatCountTheReport) {
-  scene_.hear(19, 1);
+  scene_.receive_status(19, 1);
   EXPECT_EQ(scene_.state(1), InDoubt);
   scene_.wait(1);
-  scene_.hear(19, 1);
+  scene_.receive_status(19, 1);
   EXPECT_EQ(scene_.state(1), Settled);
   const auto told = scene_.answer_to(client_);
   EXPECT_EQ(told.status, 201);
@@ -62,7 +62,7 @@ TEST_F(Doubt, EndsWithARetryIfTheReportIsNotCounted) {
 
 TEST_F(Doubt, IsLeftToTheOperatorIfTheCountContradicts) {
   scene_.wait(1);
-  scene_.hear(18, 0);
+  scene_.receive_status(18, 0);
   EXPECT_EQ(scene_.state(1), InDoubt);
   EXPECT_FALSE(scene_.reports().is_asking(scene_.report(1)));
   EXPECT_THAT(scene_.report(1).note, StartsWith("another sender may report with this token: "));
@@ -86,7 +86,7 @@ TEST_F(Doubt, BlocksOtherReportsWhileItIsPending) {
 TEST_F(Doubt, AsksForTheStatusEverySecond) {
   EXPECT_LE(*scene_.reports().next_requests(scene_.time()).status, scene_.time().now);
   scene_.wait(0.5);
-  scene_.reports().status_failed(NoStatus::NoAnswer, scene_.time());
+  scene_.reports().on_status_failed(NoStatus::NoAnswer, scene_.time());
   const auto next = *scene_.reports().next_requests(scene_.time()).status;
   EXPECT_EQ(next, scene_.time().now + std::chrono::seconds(1));
 }
@@ -94,17 +94,17 @@ TEST_F(Doubt, AsksForTheStatusEverySecond) {
 TEST_F(Doubt, StaysWhileNoStatusComes) {
   for (int i = 0; i < 100; ++i) {
     scene_.wait(1);
-    scene_.reports().status_failed(i % 2 == 0 ? NoStatus::Other : NoStatus::NoAnswer, scene_.time());
+    scene_.reports().on_status_failed(i % 2 == 0 ? NoStatus::Other : NoStatus::NoAnswer, scene_.time());
   }
   EXPECT_EQ(scene_.state(1), InDoubt);
   EXPECT_THAT(scene_.report(1).note,
               HasSubstr("the Command Post does not answer with the run's status; the operator decides"));
-  scene_.hear(20, 0);
+  scene_.receive_status(20, 0);
   scene_.wait(1);
-  scene_.hear(20, 0);
+  scene_.receive_status(20, 0);
   EXPECT_EQ(scene_.state(1), InDoubt) << "after two of three statuses";
   scene_.wait(1);
-  scene_.hear(20, 0);
+  scene_.receive_status(20, 0);
   EXPECT_EQ(scene_.state(1), Queued);
 }
 
@@ -131,7 +131,7 @@ class TwoDoubts : public Doubt {
   TwoDoubts() {
     scene_.repeat_stop(16);
     other_ = scene_.post(2);
-    scene_.lose();
+    scene_.lose_answer();
   }
   ClientId other_ = 0;
 };
@@ -179,7 +179,7 @@ TEST(DoubtsCount, IncludesReportsSentBefore) {
   scene.post(1);
   scene.answer(recorded_answer(1));
   scene.post(2);
-  scene.lose();
+  scene.lose_answer();
   scene.repeat_status(2, 18, 1);
   EXPECT_EQ(scene.state(2), Settled);
   EXPECT_THAT(scene.report(2).answer, HasSubstr(R"("score_change":0)"));
@@ -190,7 +190,7 @@ TEST(DoubtsCount, IsLeftToTheOperatorIfUnknownBefore) {
   scene.post(1);
   scene.answer(recorded_answer(0, "admin stop"));
   const ClientId client = scene.post(2);
-  scene.lose();
+  scene.lose_answer();
   EXPECT_FALSE(scene.reports().is_asking(scene.report(2)));
   scene.repeat_status(20, 20, 0);
   EXPECT_EQ(scene.state(2), InDoubt);
@@ -201,9 +201,9 @@ TEST(DoubtsCount, IsLeftToTheOperatorIfUnknownBefore) {
 TEST(DoubtsCount, IsLeftToTheOperatorIfNoReportIsLeft) {
   Scene exhausted;
   exhausted.restart();
-  exhausted.hear(0, 0);
+  exhausted.receive_status(0, 0);
   exhausted.post(1);
-  exhausted.lose();
+  exhausted.lose_answer();
   exhausted.repeat_status(60, 0, 0);
   EXPECT_EQ(exhausted.state(1), InDoubt);
   EXPECT_THAT(exhausted.report(1).note, HasSubstr("the counts cannot show a report now"));

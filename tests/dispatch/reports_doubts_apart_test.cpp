@@ -17,15 +17,17 @@ class DoubtOfEitherRun : public testing::Test {
  protected:
   DoubtOfEitherRun() {
     scene_.post(1);
-    scene_.lose();
+    scene_.lose_answer();
     scene_.wait(3);
-    hear(25, 0);
+    receive_status(25, 0);
   }
-  void hear(std::int64_t remaining, std::int64_t score) { scene_.hear(remaining, score, scene_.now() - 100); }
+  void receive_status(std::int64_t remaining, std::int64_t score) {
+    scene_.receive_status(remaining, score, scene_.now() - 100);
+  }
   void repeat(int times, std::int64_t remaining, std::int64_t score) {
     for (int i = 0; i < times; ++i) {
       scene_.wait(1);
-      hear(remaining, score);
+      receive_status(remaining, score);
     }
   }
   Scene scene_;
@@ -34,12 +36,12 @@ class DoubtOfEitherRun : public testing::Test {
 TEST_F(DoubtOfEitherRun, LeavesALaterDoubtToTheCounts) {
   repeat(8, 25, 0);
   scene_.post(2);
-  scene_.lose();
+  scene_.lose_answer();
   repeat(2, 24, 1);
   EXPECT_EQ(scene_.state(2), Settled);
   EXPECT_THAT(scene_.report(2).answer, HasSubstr(R"("score_change":1)"));
   scene_.post(3);
-  scene_.lose();
+  scene_.lose_answer();
   repeat(12, 24, 1);
   EXPECT_EQ(scene_.send_next(), 3) << "not recorded";
   EXPECT_EQ(scene_.state(1), InDoubt);
@@ -50,7 +52,7 @@ TEST_F(DoubtOfEitherRun, LeavesALaterDoubtToTheCountsAfterARestart) {
   scene_.restart();
   repeat(2, 25, 0);
   scene_.post(2);
-  scene_.lose();
+  scene_.lose_answer();
   EXPECT_EQ(scene_.report(2).beside, 0) << "report 1 is closed on disk";
   repeat(2, 24, 1);
   EXPECT_EQ(scene_.state(2), Settled);
@@ -59,14 +61,14 @@ TEST_F(DoubtOfEitherRun, LeavesALaterDoubtToTheCountsAfterARestart) {
 TEST_F(DoubtOfEitherRun, ExplainsOneReportUntilItIsClosed) {
   repeat(2, 25, 0);
   scene_.post(2);
-  scene_.lose();
+  scene_.lose_answer();
   EXPECT_EQ(scene_.report(2).beside, 1);
   repeat(40, 24, 0);
   EXPECT_EQ(scene_.state(2), InDoubt) << "either may be recorded";
   EXPECT_FALSE(scene_.reports().is_asking(scene_.report(2)));
   EXPECT_THAT(scene_.report(2).note, HasSubstr("1 other report in doubt may explain it"));
   scene_.post(3);
-  scene_.lose();
+  scene_.lose_answer();
   EXPECT_EQ(scene_.report(3).beside, 0);
   repeat(2, 23, 0);
   EXPECT_EQ(scene_.state(3), Settled) << "both earlier ones are closed";
@@ -76,7 +78,7 @@ TEST_F(DoubtOfEitherRun, ExplainsOneReportUntilItIsClosed) {
 TEST_F(DoubtOfEitherRun, ExplainsNothingIfNothingIsCounted) {
   repeat(2, 25, 0);
   scene_.post(2);
-  scene_.lose();
+  scene_.lose_answer();
   repeat(12, 25, 0);
   EXPECT_EQ(scene_.send_next(), 2);
 }
@@ -84,7 +86,7 @@ TEST_F(DoubtOfEitherRun, ExplainsNothingIfNothingIsCounted) {
 TEST_F(DoubtOfEitherRun, ExplainsOneOfTwo) {
   repeat(2, 25, 0);
   scene_.post(2);
-  scene_.lose();
+  scene_.lose_answer();
   repeat(2, 23, 1);
   EXPECT_EQ(scene_.state(2), Settled);
   EXPECT_THAT(scene_.report(2).answer, HasSubstr(R"("score_change":null)")) << "either may have the point";
@@ -101,8 +103,7 @@ TEST_F(DoubtOfEitherRun, ContradictsNoMoreThanItExplains) {
 
 TEST_F(DoubtOfEitherRun, IsClosedOnlyByAStatusThatWasAskedLateEnough) {
   scene_.wait(8);
-  scene_.reports().status_heard({0, 11, 25, "adit"}, scene_.time().now - std::chrono::seconds(2),
-                                scene_.time());
+  scene_.reports().on_status({0, 11, 25, "adit"}, scene_.time().now - std::chrono::seconds(2), scene_.time());
   EXPECT_FALSE(scene_.report(1).counted);
   repeat(1, 25, 0);
   EXPECT_TRUE(scene_.report(1).counted);
@@ -113,7 +114,7 @@ TEST_F(DoubtOfEitherRun, IsNotClosedWhileTheClockStands) {
   repeat(2, 25, 0);
   for (int i = 0; i < 20; ++i) {
     scene_.wait(1);
-    scene_.hear(25, 0, 5);
+    scene_.receive_status(25, 0, 5);
   }
   EXPECT_FALSE(scene_.report(1).counted) << "an administrative stop hides a record";
 }
@@ -130,7 +131,7 @@ TEST_F(DoubtOfEitherRun, StaysOpenIfItCannotBeWritten) {
 TEST_F(DoubtOfEitherRun, HasItsOwnReason) {
   repeat(8, 25, 0);
   scene_.post(2);
-  scene_.lose();
+  scene_.lose_answer();
   repeat(1, 24, 0);
   repeat(1, 25, 0);  // one is granted: the count rises
   EXPECT_THAT(scene_.report(1).note, HasSubstr("a new run began just after it was sent"));
@@ -141,11 +142,11 @@ TEST_F(DoubtOfEitherRun, HasItsOwnReason) {
 TEST_F(DoubtOfEitherRun, EndsTheProofOfTheRunIfAnotherSenderReports) {
   repeat(8, 25, 0);
   scene_.post(2);
-  scene_.lose();
+  scene_.lose_answer();
   repeat(1, 22, 0);
   EXPECT_THAT(scene_.reports().run().unreliable, HasSubstr("another sender may report"));
   scene_.post(3);
-  scene_.lose();
+  scene_.lose_answer();
   repeat(30, 22, 0);
   EXPECT_EQ(scene_.state(2), InDoubt);
   EXPECT_EQ(scene_.state(3), InDoubt);
@@ -154,7 +155,7 @@ TEST_F(DoubtOfEitherRun, EndsTheProofOfTheRunIfAnotherSenderReports) {
 TEST_F(DoubtOfEitherRun, BlursNoOtherIfTheOperatorDecidesItLate) {
   repeat(8, 25, 0);
   scene_.post(2);
-  scene_.lose();
+  scene_.lose_answer();
   ASSERT_TRUE(scene_.reports().settle(1, scene_.time()));
   repeat(2, 24, 0);
   EXPECT_EQ(scene_.state(2), Settled);
@@ -163,7 +164,7 @@ TEST_F(DoubtOfEitherRun, BlursNoOtherIfTheOperatorDecidesItLate) {
 TEST_F(DoubtOfEitherRun, BlursOthersIfTheOperatorDecidesItEarly) {
   repeat(2, 25, 0);
   scene_.post(2);
-  scene_.lose();
+  scene_.lose_answer();
   ASSERT_TRUE(scene_.reports().settle(1, scene_.time()));
   repeat(30, 24, 0);
   EXPECT_EQ(scene_.state(2), InDoubt);
@@ -174,21 +175,21 @@ TEST_F(DoubtOfEitherRun, BlursOthersIfTheOperatorDecidesItEarly) {
 TEST(AmbiguousDoubts, LeaveALaterDoubtToTheCounts) {
   Scene scene;
   scene.post(1);
-  scene.lose();
+  scene.lose_answer();
   scene.repeat_stop(16);
   scene.post(2);
-  scene.lose();
+  scene.lose_answer();
   for (int i = 0; i < 40; ++i) {
     scene.wait(1);
-    scene.hear(19, 0);
+    scene.receive_status(19, 0);
   }
   ASSERT_EQ(scene.state(1), InDoubt);
   ASSERT_EQ(scene.state(2), InDoubt);
   scene.post(3);
-  scene.lose();
+  scene.lose_answer();
   for (int i = 0; i < 2; ++i) {
     scene.wait(1);
-    scene.hear(18, 1);
+    scene.receive_status(18, 1);
   }
   EXPECT_EQ(scene.state(3), Settled);
   EXPECT_THAT(scene.report(3).answer, HasSubstr(R"("score_change":1)"));
@@ -199,21 +200,21 @@ TEST(AmbiguousDoubts, LeaveALaterDoubtToTheCounts) {
 TEST(DoubtWithoutReportsLeft, LeavesALaterDoubtToTheCounts) {
   Scene scene;
   scene.restart();
-  scene.hear(0, 0);
+  scene.receive_status(0, 0);
   scene.post(1);
-  scene.lose();
+  scene.lose_answer();
   for (int i = 0; i < 20; ++i) {
     scene.wait(1);
-    scene.hear(0, 0);
+    scene.receive_status(0, 0);
   }
   scene.wait(1);
-  scene.hear(5, 0);
+  scene.receive_status(5, 0);
   EXPECT_EQ(scene.state(1), InDoubt);
   scene.post(2);
-  scene.lose();
+  scene.lose_answer();
   for (int i = 0; i < 2; ++i) {
     scene.wait(1);
-    scene.hear(4, 0);
+    scene.receive_status(4, 0);
   }
   EXPECT_EQ(scene.state(2), Settled);
   EXPECT_EQ(scene.state(1), InDoubt);
@@ -225,22 +226,22 @@ TEST(DoubtBeforeTwoThatWereFound, IsNotContradictedByTheirPoint) {
   const auto fail = [&scene](int times) {
     for (int i = 0; i < times; ++i) {
       scene.wait(1);
-      scene.reports().status_failed(NoStatus::Other, scene.time());
+      scene.reports().on_status_failed(NoStatus::Other, scene.time());
     }
   };
   scene.post(1);
-  scene.lose();
+  scene.lose_answer();
   fail(20);
-  scene.hear(20, 0);
+  scene.receive_status(20, 0);
   fail(6);
   ASSERT_EQ(scene.count(), 1U);
   scene.post_queued(2);
   ASSERT_EQ(scene.send_next(), 2);
-  scene.lose();
+  scene.lose_answer();
   fail(20);
   scene.post_queued(3);
   ASSERT_EQ(scene.send_next(), 3);
-  scene.lose();
+  scene.lose_answer();
   scene.repeat_status(2, 18, 1);
   ASSERT_EQ(scene.state(2), Settled);
   ASSERT_EQ(scene.state(3), Settled);

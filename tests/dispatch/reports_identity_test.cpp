@@ -16,14 +16,14 @@ class OtherCommandPost : public testing::Test {
   OtherCommandPost() {
     scene_.post(1);
     scene_.answer(recorded_answer(1));
-    scene_.hear(19, 1);
+    scene_.receive_status(19, 1);
   }
   void move_away() { scene_.restart(kThere); }
   void come_back() { scene_.restart(); }
   void expect_one_recording() {
     const ClientId again = scene_.post(1);
     scene_.wait(1);
-    scene_.hear(19, 1);
+    scene_.receive_status(19, 1);
     while (scene_.send_next() != 0) FAIL() << "it is resent";
     EXPECT_EQ(scene_.answer_to(again).body, recorded_answer(1).body);
   }
@@ -42,15 +42,15 @@ TEST_F(OtherCommandPost, QueuesARepeatUntilItAnswers) {
   EXPECT_EQ(scene_.state(2), Queued);
   EXPECT_THAT(scene_.report(2).note, HasSubstr("the same as report 1"));
   EXPECT_THAT(scene_.report(2).note, HasSubstr("10.100.2.200:8000 answers"));
-  scene_.reports().status_failed(NoStatus::Other, scene_.time());
+  scene_.reports().on_status_failed(NoStatus::Other, scene_.time());
   EXPECT_EQ(scene_.send_next(), 0) << "the run is unknown";
-  scene_.hear(20, 0);
+  scene_.receive_status(20, 0);
   EXPECT_EQ(scene_.send_next(), 2) << "in the new run";
 }
 
 TEST_F(OtherCommandPost, LeavesTheFirstRunForAReturn) {
   move_away();
-  scene_.hear(20, 0);
+  scene_.receive_status(20, 0);
   come_back();
   EXPECT_EQ(scene_.reports().run().number, 1);
   expect_one_recording();
@@ -62,7 +62,7 @@ TEST_F(OtherCommandPost, PassesItsReportsToTheFirstIfItNeverAnswered) {
   scene_.post(2);
   come_back();
   scene_.wait(1);
-  scene_.hear(19, 1);
+  scene_.receive_status(19, 1);
   EXPECT_EQ(scene_.send_next(), 3) << "a new report is for the first Command Post that answers";
   EXPECT_EQ(scene_.state(2), Withdrawn);
   EXPECT_EQ(scene_.report(2).same_as, 1);
@@ -77,7 +77,7 @@ TEST_F(OtherCommandPost, PassesOnNoActionOfTheOperator) {
   ASSERT_TRUE(scene_.reports().send(2, scene_.time()));
   come_back();
   scene_.wait(1);
-  scene_.hear(19, 1);
+  scene_.receive_status(19, 1);
   EXPECT_EQ(scene_.send_next(), 0);
   EXPECT_EQ(scene_.state(2), Withdrawn);
 }
@@ -98,7 +98,7 @@ TEST_F(OtherCommandPost, GetsNoReportQueuedForTheFirst) {
   move_away();
   EXPECT_EQ(scene_.state(2), Queued);
   EXPECT_EQ(scene_.report(2).run, 1);
-  scene_.hear(20, 0);
+  scene_.receive_status(20, 0);
   EXPECT_EQ(scene_.send_next(), 0);
   EXPECT_THAT(scene_.reports().waiting_here(), IsEmpty());
   EXPECT_EQ(scene_.report(2).note, "kept for the Command Post at 10.100.1.200:8000");
@@ -106,7 +106,7 @@ TEST_F(OtherCommandPost, GetsNoReportQueuedForTheFirst) {
               testing::ElementsAre(testing::Pair("10.100.1.200:8000", 1)));
   come_back();
   scene_.wait(1);
-  scene_.hear(19, 1);
+  scene_.receive_status(19, 1);
   EXPECT_EQ(scene_.send_next(), 2);
 }
 
@@ -114,13 +114,13 @@ TEST_F(OtherCommandPost, HoldsReportsOfTheFirstInItsNewRun) {
   scene_.post_queued(3);
   move_away();
   come_back();
-  scene_.hear(25, 0, 4);
+  scene_.receive_status(25, 0, 4);
   EXPECT_EQ(scene_.state(2), Held);
 }
 
 TEST_F(OtherCommandPost, DecidesNoDoubtOfTheFirst) {
   scene_.post(4);
-  scene_.lose();
+  scene_.lose_answer();
   move_away();
   EXPECT_EQ(scene_.report(2).run, 1);
   EXPECT_THAT(scene_.report(2).note, HasSubstr("10.100.1.200:8000"));
@@ -133,13 +133,13 @@ TEST_F(OtherCommandPost, DecidesNoDoubtOfTheFirst) {
 
 TEST_F(OtherCommandPost, MakesOtherDoubtsUncertainAfterASettlement) {
   scene_.post(4);
-  scene_.lose();
+  scene_.lose_answer();
   for (int i = 0; i < 16; ++i) {
     scene_.wait(1);
-    scene_.hear(19, 1, 101);
+    scene_.receive_status(19, 1, 101);
   }
   scene_.post(5);
-  scene_.lose();
+  scene_.lose_answer();
   move_away();
   ASSERT_TRUE(scene_.reports().settle(2, scene_.time()));
   EXPECT_EQ(scene_.report(3).before, std::nullopt);
@@ -150,7 +150,7 @@ TEST(UnheardCommandPost, KeepsItsDoubts) {
   FakeOutput output;
   Reports reports({}, output);
   reports.open({}, {}, time, "10.100.1.200:8000");
-  reports.status_failed(NoStatus::Other, time);
+  reports.on_status_failed(NoStatus::Other, time);
   reports.accept({.report = {.type = "Drill", .position = {1, 2, 3}}, .sender = "10.0.0.7"}, 1, true, time);
   ASSERT_NE(reports.choose(time), nullptr);
   reports.on_lost("no answer", time);
@@ -165,12 +165,12 @@ TEST(OtherTeam, LeavesTheFirstRunForAReturn) {
   Scene scene;
   scene.post(1);
   scene.answer(recorded_answer(1));
-  scene.hear(19, 1);
+  scene.receive_status(19, 1);
   scene.wait(1);
-  scene.reports().status_heard({0, 5, 25, "other"}, scene.time().now, scene.time());
+  scene.reports().on_status({0, 5, 25, "other"}, scene.time().now, scene.time());
   EXPECT_EQ(scene.reports().run().number, 2);
   scene.wait(1);
-  scene.hear(19, 1);
+  scene.receive_status(19, 1);
   EXPECT_EQ(scene.reports().run().number, 1);
   scene.post(1);
   EXPECT_EQ(scene.count(), 1u);
@@ -182,7 +182,7 @@ TEST(OtherRunName, LeavesTheFirstRunForAReturn) {
   scene.record(2, "2");
   EXPECT_EQ(scene.reports().run().number, 2);
   scene.wait(1);
-  scene.hear(24, 0, 3);
+  scene.receive_status(24, 0, 3);
   scene.record(3, "1");
   EXPECT_EQ(scene.reports().run().number, 1);
   scene.post(1);

@@ -18,7 +18,7 @@ class LostReport : public testing::Test {
   /// Numbers of lost reports because of which new reports are held.
   std::vector<std::int64_t> holding() const {
     std::vector<std::int64_t> numbers;
-    for (const Report* const lost : scene_.reports().lost_here()) numbers.push_back(lost->number);
+    for (const Report* const lost : scene_.reports().lost_reports()) numbers.push_back(lost->number);
     return numbers;
   }
 
@@ -57,7 +57,7 @@ TEST_F(LostReport, HoldsNoRepeatOfAKnownReport) {
 TEST_F(LostReport, HoldsReportsPostedBeforeTheRunIsKnown) {
   scene_.restart();
   scene_.post(2);
-  scene_.hear(19, 0);
+  scene_.receive_status(19, 0);
   EXPECT_EQ(scene_.send_next(), 0);
   EXPECT_EQ(scene_.state(3), Held);
 }
@@ -74,7 +74,7 @@ TEST_F(LostReport, HoldsNoReportOnceItIsSettled) {
 
 TEST_F(LostReport, HoldsNoReportOfAnotherRun) {
   scene_.reports().declare_new_run(scene_.time());
-  scene_.hear(20, 0);
+  scene_.receive_status(20, 0);
   scene_.post(2);
   EXPECT_EQ(scene_.state(3), Sending);
   EXPECT_THAT(scene_.undecided(), ElementsAre(HasSubstr(kNote))) << "still open";
@@ -99,7 +99,7 @@ TEST_F(LostReport, HoldsNewReportsForAnotherCommandPost) {
 TEST_F(LostReport, HoldsNewReportsOfARunThatTheFirstStatusShows) {
   scene_.output().ledger[2].sent = scene_.reports().run().heard;
   scene_.restart();
-  scene_.hear(25, 0);
+  scene_.receive_status(25, 0);
   ASSERT_EQ(scene_.reports().run().number, 2);
   scene_.post(2);
   EXPECT_EQ(scene_.state(3), Held);
@@ -122,7 +122,7 @@ TEST_F(LostReport, KeepsItsNoteAtEachStatus) {
   ASSERT_TRUE(scene_.reports().send(3, scene_.time()));
   scene_.repeat_status(1, 19, 0);
   ASSERT_EQ(scene_.send_next(), 3);
-  scene_.lose();
+  scene_.lose_answer();
   scene_.repeat_status(20, 18, 0);
   EXPECT_EQ(scene_.report(2).note, kNote);
   EXPECT_EQ(scene_.state(3), InDoubt) << "the lost report may have used one";

@@ -23,12 +23,12 @@ class PendingMove : public testing::Test {
     scene_.answer(recorded_answer());
     scene_.move_to(kThere);
     scene_.wait(1);
-    scene_.hear(20, 0);
+    scene_.receive_status(20, 0);
   }
   void go_back() {
     scene_.move_to(kHere);
     scene_.wait(1);
-    scene_.hear(19, 0);
+    scene_.receive_status(19, 0);
   }
   const std::string& post_of(std::int64_t number) {
     return scene_.reports().runs().find(scene_.report(number).run)->post;
@@ -61,7 +61,7 @@ TEST_F(PendingMove, SurvivesARestart) {
   EXPECT_EQ(scene_.reports().run().post, kThere);
   EXPECT_EQ(scene_.state(1), InDoubt);
   EXPECT_EQ(post_of(1), kHere);
-  scene_.hear(20, 0);
+  scene_.receive_status(20, 0);
   EXPECT_EQ(scene_.send_next(), 3);
 }
 
@@ -108,7 +108,7 @@ TEST_F(PendingMove, AppliesActionsToTheNewCommandPost) {
 }
 
 TEST_F(PendingMove, HoldsADoubtThatTheOperatorSentToACommandPostWithoutAnswer) {
-  scene_.lose();
+  scene_.lose_answer();
   scene_.move_to(kThere);
   ASSERT_TRUE(scene_.reports().send(1, scene_.time()));
   EXPECT_EQ(post_of(1), kThere);

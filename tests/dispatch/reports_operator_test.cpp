@@ -46,7 +46,7 @@ class OperatorsActions : public testing::TestWithParam<Words> {
     const auto outcome = say(scene.reports(), scene.time());
     if (!outcome) {
       EXPECT_EQ(scene.report(1), before);
-      EXPECT_THAT(outcome.error(), HasSubstr("report 1 is " + std::string(shown_name_of(GetParam().state))));
+      EXPECT_THAT(outcome.error(), HasSubstr("report 1 is " + std::string(display_name(GetParam().state))));
     }
     return outcome.has_value();
   }
@@ -91,7 +91,7 @@ TEST(HoldAction, ExplainsWhyItIsTooLate) {
   scene.post(1);
   EXPECT_THAT(scene.reports().hold(1, scene.time()).error(),
               HasSubstr("is sending: it may have been sent already"));
-  scene.lose();
+  scene.lose_answer();
   EXPECT_THAT(scene.reports().hold(1, scene.time()).error(),
               HasSubstr("is in doubt: it may have been sent already"));
   EXPECT_EQ(scene.state(1), InDoubt);
@@ -110,10 +110,10 @@ TEST(WithdrawAction, AnswersClientsAndRepeats) {
 TEST(SendAction, LeavesOtherDoubtsToTheOperator) {
   Scene scene;
   scene.post(1);
-  scene.lose();
+  scene.lose_answer();
   scene.repeat_stop(16);
   scene.post(2);
-  scene.lose();
+  scene.lose_answer();
   ASSERT_TRUE(scene.reports().send(2, scene.time()).has_value());
   EXPECT_EQ(scene.report(1).before, std::nullopt) << "either may be counted now";
   EXPECT_FALSE(scene.reports().is_asking(scene.report(1)));
@@ -124,14 +124,14 @@ TEST(SendAction, LeavesOtherDoubtsToTheOperator) {
 TEST(SettleAction, TellsClientsThatTheAnswerIsUnknown) {
   Scene scene;
   const ClientId client = scene.post();
-  scene.lose();
+  scene.lose_answer();
   ASSERT_TRUE(scene.reports().settle(1, scene.time()).has_value());
   EXPECT_EQ(scene.state(1), Settled);
   EXPECT_FALSE(scene.report(1).reconciled);
   EXPECT_EQ(scene.answer_to(client).status, 409);
   EXPECT_THAT(scene.answer_to(client).sentence,
               HasSubstr("settled by the operator; its answer is not known"));
-  scene.hear(19, 0);
+  scene.receive_status(19, 0);
   EXPECT_EQ(scene.answer_to(scene.post()).status, 409) << "a repeat";
 }
 
@@ -139,7 +139,7 @@ TEST(SettleAction, AllowsEitherCountInTheNextStatus) {
   for (const std::int64_t remaining : {19, 20}) {
     Scene scene;
     scene.post();
-    scene.lose();
+    scene.lose_answer();
     ASSERT_TRUE(scene.reports().settle(1, scene.time()).has_value());
     scene.repeat_status(5, remaining, 0);
     EXPECT_EQ(scene.reports().run().unreliable, "");
@@ -149,11 +149,11 @@ TEST(SettleAction, AllowsEitherCountInTheNextStatus) {
 TEST(SettleAction, LeavesTheNextDoubtToTheOperator) {
   Scene scene;
   scene.post(1);
-  scene.lose();
+  scene.lose_answer();
   ASSERT_TRUE(scene.reports().settle(1, scene.time()).has_value());
   scene.repeat_status(3, 20, 0);
   scene.post(2);
-  scene.lose();
+  scene.lose_answer();
   scene.repeat_status(20, 19, 0);  // report 1 is recorded late
   EXPECT_EQ(scene.state(2), InDoubt);
 }
@@ -164,17 +164,17 @@ TEST(SettleAction, LeavesNoFalseEvidenceAtAPowerCut) {
   for (std::int64_t writes = 0; writes < 4; ++writes) {
     Scene scene;
     scene.post(1);
-    scene.lose();
+    scene.lose_answer();
     scene.repeat_stop(16);
     scene.post(2);
-    scene.lose();
+    scene.lose_answer();
     scene.output().writes_until_full = writes;
     (void)scene.reports().settle(2, scene.time());
     scene.output().writes_until_full = -1;
     scene.restart();
     for (int i = 0; i < 15; ++i) {
       scene.wait(1);
-      scene.hear(19, 0, 118 + i);  // report 2 was recorded
+      scene.receive_status(19, 0, 118 + i);  // report 2 was recorded
     }
     EXPECT_EQ(scene.state(1), InDoubt) << writes;
   }
@@ -183,7 +183,7 @@ TEST(SettleAction, LeavesNoFalseEvidenceAtAPowerCut) {
 TEST(SendAction, IsRejectedForADoubtIfTheSameReportWasAnsweredLater) {
   Scene scene;
   scene.post(1);
-  scene.lose();
+  scene.lose_answer();
   scene.repeat_stop(16);
   scene.post(1, "Drill", true);
   scene.answer(recorded_answer());
@@ -199,7 +199,7 @@ TEST(SendAction, IsAcceptedForADoubtThatRepeatsARecordedReportOnPurpose) {
   scene.post(1);
   scene.answer(recorded_answer());
   scene.post(1, "Drill", true);
-  scene.lose();
+  scene.lose_answer();
   ASSERT_EQ(scene.state(2), InDoubt);
   EXPECT_TRUE(scene.reports().send(2, scene.time()));
 }
@@ -224,8 +224,8 @@ TEST(Operator, DecidesDoubtsButNoRejectedReports) {
   scene.post(1);
   scene.answer(answer_of(422));
   scene.post(2);
-  scene.lose();
-  scene.hear(17, 0);
+  scene.lose_answer();
+  scene.receive_status(17, 0);
   EXPECT_THAT(scene.undecided(), ElementsAre(scene.report(2).note));
   EXPECT_THAT(scene.reports().run().unreliable, HasSubstr("another sender may report"));
 }
@@ -255,7 +255,7 @@ class ReportHeldInTheLastRun : public testing::Test {
     scene.post(2);
     ASSERT_EQ(scene.state(2), Held);
     scene.reports().declare_new_run(scene.time());
-    scene.hear(20, 0, 1);
+    scene.receive_status(20, 0, 1);
   }
 
   static ReportRules rules() {

@@ -46,7 +46,7 @@ TEST(NewReport, IsQueuedUntilTheRunIsKnown) {
   EXPECT_EQ(scene.reports().sending(), nullptr);
   EXPECT_FALSE(scene.reports().next_requests(scene.time()).report);
   EXPECT_EQ(scene.reports().next_requests(scene.time()).status, scene.time().now);
-  scene.hear(20, 0);
+  scene.receive_status(20, 0);
   EXPECT_EQ(scene.send_next(), 1);
 }
 
@@ -122,7 +122,7 @@ TEST(RepeatedReport, IsComparedOnceTheRunIsKnown) {
   const ClientId client = scene.post(1);
   EXPECT_FALSE(scene.is_answered(client)) << "it may be meant for another run";
   EXPECT_EQ(scene.state(2), Queued);
-  scene.hear(19, 0);
+  scene.receive_status(19, 0);
   EXPECT_EQ(scene.send_next(), 0);
   EXPECT_EQ(scene.state(2), Withdrawn);
   EXPECT_EQ(scene.report(2).same_as, 1);
@@ -137,7 +137,7 @@ TEST(RepeatedReport, IsSentThoughAnEarlierRepeatWasJoined) {
     ASSERT_TRUE(scene.reports().withdraw(1, scene.time()).has_value());
     scene.wait(16);
     const ClientId repeat = scene.post(1);
-    scene.hear(20, 0);
+    scene.receive_status(20, 0);
     scene.send_next();
     ASSERT_EQ(scene.report(2).same_as, 1);
     EXPECT_EQ(scene.answer_to(repeat).status, 409);
@@ -181,7 +181,7 @@ TEST(NearbyReport, IsHeldWithItsReason) {
   scene.wait(20);
   EXPECT_EQ(scene.answer_to(near).status, 503);
   EXPECT_THAT(scene.answer_to(near).sentence, HasSubstr("is held until the operator decides (the same type"));
-  scene.hear(19, 0);
+  scene.receive_status(19, 0);
   scene.post(7, "Drill");
   EXPECT_EQ(scene.state(3), Held) << "near the held report";
   scene.post(1, "Vent");

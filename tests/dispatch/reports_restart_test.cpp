@@ -25,7 +25,7 @@ TEST(Restart, PutsAReportInFlightInDoubt) {
 TEST(Restart, KeepsTheCountOfReportsSentSinceADoubt) {
   Scene scene;
   scene.post(1);
-  scene.lose();
+  scene.lose_answer();
   scene.repeat_stop(16);
   scene.post(2);
   scene.answer(recorded_answer(1, "scored", "1", 117));
@@ -37,7 +37,7 @@ TEST(Restart, KeepsTheCountOfReportsSentSinceADoubt) {
 TEST(Restart, GivesADoubtItsWholeTimeAgain) {
   Scene scene;
   scene.post();
-  scene.lose();
+  scene.lose_answer();
   scene.repeat_status(9, 20, 0);
   scene.restart();
   scene.repeat_status(9, 20, 0);
@@ -51,7 +51,7 @@ TEST(Restart, SendsQueuedReportsOnceTheRunIsKnown) {
   scene.post_queued();
   scene.restart();
   EXPECT_EQ(scene.send_next(), 0);
-  scene.hear(20, 0);
+  scene.receive_status(20, 0);
   EXPECT_EQ(scene.send_next(), 1);
 }
 
@@ -59,7 +59,7 @@ TEST(Restart, HoldsQueuedReportsIfTheRunIsAnother) {
   Scene scene;
   scene.post_queued();
   scene.restart();
-  scene.hear(25, 0, 3);
+  scene.receive_status(25, 0, 3);
   EXPECT_EQ(scene.state(1), Held);
 }
 
@@ -67,7 +67,7 @@ TEST(Restart, HoldsQueuedReportsIfTheRunIsAnother) {
 struct RunningClock : testing::Test {
   RunningClock() {
     scene.wait(5);
-    scene.hear(20, 0);
+    scene.receive_status(20, 0);
     scene.post_queued();
   }
   Scene scene;
@@ -76,7 +76,7 @@ struct RunningClock : testing::Test {
 TEST_F(RunningClock, ShowsNoNewRunAfterAClockStep) {
   scene.step_clock(5e6);
   scene.restart();
-  scene.hear(20, 0, 110);
+  scene.receive_status(20, 0, 110);
   EXPECT_EQ(scene.reports().run().number, 1);
   EXPECT_EQ(scene.state(1), Queued) << "the same run";
 }
@@ -85,7 +85,7 @@ TEST_F(RunningClock, ShowsANewRunAfterAClockStepAndASilence) {
   scene.step_clock(5e6);
   scene.wait(3600);
   scene.restart();
-  scene.hear(20, 0, 120);
+  scene.receive_status(20, 0, 120);
   EXPECT_EQ(scene.state(1), Held);
 }
 
@@ -108,17 +108,17 @@ TEST(Restart, ContinuesTheOrderOfSending) {
   scene.post(1);
   scene.answer(recorded_answer());
   scene.restart();
-  scene.hear(19, 0);
+  scene.receive_status(19, 0);
   scene.post(2);
   EXPECT_EQ(scene.report(2).sending, 2);
 }
 
 TEST(Restart, KeepsDistrustInTheCount) {
   Scene scene;
-  scene.hear(18, 0);
-  scene.hear(18, 0);
+  scene.receive_status(18, 0);
+  scene.receive_status(18, 0);
   scene.restart();
-  scene.hear(18, 0);
+  scene.receive_status(18, 0);
   scene.post();
   EXPECT_EQ(scene.report(1).before, std::nullopt);
 }
@@ -131,7 +131,7 @@ TEST(Restart, ComparesEachQueuedReportWithEarlierOnes) {
   scene.post(1);
   scene.post(2);
   scene.restart();
-  scene.hear(20, 0);
+  scene.receive_status(20, 0);
   EXPECT_EQ(scene.send_next(), 1);
   scene.answer(recorded_answer());
   scene.send_next();
@@ -144,7 +144,7 @@ TEST(MoveToAnotherCommandPost, AnswersClientsThatPostedBefore) {
   const ClientId client = scene.post_queued();
   scene.move_to("10.0.0.2:1");
   EXPECT_FALSE(scene.is_answered(client));
-  scene.hear(20, 0);
+  scene.receive_status(20, 0);
   ASSERT_EQ(scene.send_next(), 1);
   scene.answer(recorded_answer(1));
   EXPECT_EQ(scene.answer_to(client).status, 201);
@@ -154,13 +154,13 @@ TEST(MoveToAnotherCommandPost, AnswersClientsOfTheOldOneAtTheirDeadline) {
   Scene scene;
   const ClientId client = scene.post_queued();
   scene.move_to("10.0.0.2:1");
-  scene.hear(20, 0);
+  scene.receive_status(20, 0);
   EXPECT_EQ(scene.send_next(), 0);
   EXPECT_FALSE(scene.is_answered(client));
   scene.wait(20);
   EXPECT_EQ(scene.answer_to(client).status, 503);
   scene.move_to("10.100.1.200:8000");
-  scene.hear(20, 0);
+  scene.receive_status(20, 0);
   EXPECT_EQ(scene.send_next(), 1);
 }
 
@@ -170,7 +170,7 @@ TEST(NewRules, ApplyToLaterClients) {
   ReportRules rules;
   rules.answer_within = std::chrono::seconds{5};
   rules.review = Review::All;
-  scene.reports().go_by(rules);
+  scene.reports().set_rules(rules);
   const ClientId after = scene.post_queued(100);
   EXPECT_EQ(scene.state(2), Held);
   scene.wait(5);
@@ -186,7 +186,7 @@ TEST(Reboot, IsNoSilence) {
   scene.wait(10);
   scene.set_box_clock_forward(30);
   scene.restart();
-  scene.hear(20, 0);
+  scene.receive_status(20, 0);
   EXPECT_EQ(scene.reports().run().number, 1) << scene.reports().run().why;
 }
 

@@ -17,7 +17,7 @@ class AnswerAtARunChange : public testing::Test {
     scene_.wait(5);
     scene_.record(1, "1");
     scene_.wait(5);
-    scene_.hear(25, 0, 3);
+    scene_.receive_status(25, 0, 3);
   }
   Scene scene_;
 };
@@ -72,7 +72,7 @@ TEST_F(AnswerAtARunChange, LetsTheOperatorSendTheRepeat) {
 
 TEST_F(AnswerAtARunChange, HoldsARepeatAfterARestart) {
   scene_.restart();
-  scene_.hear(25, 0, 4);
+  scene_.receive_status(25, 0, 4);
   scene_.post(1);
   EXPECT_EQ(scene_.state(2), Held);
   scene_.record(2, "1");
@@ -93,7 +93,7 @@ TEST(AnswerBeforeARestart, HoldsARepeatInALikelyNewRun) {
   scene.answer(recorded_answer(0, "scored", "1", 105));
   scene.restart();
   scene.wait(5);
-  scene.hear(25, 0, 3);
+  scene.receive_status(25, 0, 3);
   ASSERT_EQ(scene.reports().run().number, 2);
   scene.post(1);
   EXPECT_EQ(scene.state(2), Held);
@@ -105,9 +105,9 @@ TEST(AnswerBeforeAStatus, BelongsToTheOldRun) {
   scene.post(1);
   scene.answer(recorded_answer());
   scene.wait(5);
-  scene.hear(19, 0);
+  scene.receive_status(19, 0);
   scene.wait(5);
-  scene.hear(25, 0, 3);
+  scene.receive_status(25, 0, 3);
   EXPECT_EQ(scene.report(1).run, 1);
   scene.post(1);
   EXPECT_EQ(scene.state(2), Held) << "its run may go on";
@@ -120,7 +120,7 @@ TEST(UnnamedAnswerAtARunChange, BelongsToTheNewRunWhateverItsName) {
   scene.wait(5);
   scene.record(1, "");
   scene.wait(5);
-  scene.hear(25, 0, 3);
+  scene.receive_status(25, 0, 3);
   const ClientId again = scene.post(1);
   ASSERT_EQ(scene.state(2), Held);
   scene.record(2, "2");

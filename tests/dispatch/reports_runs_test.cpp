@@ -13,7 +13,7 @@ using testing::IsEmpty;
 TEST(NewRun, ShowsByMoreReportsLeft) {
   Scene scene;
   scene.wait(10);
-  scene.hear(25, 0, 3);
+  scene.receive_status(25, 0, 3);
   EXPECT_EQ(scene.reports().run().number, 2);
   EXPECT_THAT(scene.output().run->why, HasSubstr("the reports left went up from 20 to 25"));
   EXPECT_EQ(scene.output().run->last->remaining_reports, 25);
@@ -36,7 +36,7 @@ TEST(NewRun, HoldsQueuedReportsOfTheLastRun) {
   Scene scene;
   scene.post_queued(1);
   scene.wait(11);
-  scene.hear(25, 0, 3);
+  scene.receive_status(25, 0, 3);
   EXPECT_EQ(scene.state(1), Held);
   EXPECT_THAT(scene.report(1).note, HasSubstr("a new run began (the run clock went back"));
   EXPECT_EQ(scene.output().ledger.at(1).state, Held) << "stored with the run";
@@ -49,7 +49,7 @@ TEST(NewRun, TakesInReportsPostedJustBefore) {
   Scene scene;
   scene.post_queued(1);
   scene.wait(9);
-  scene.hear(25, 0, 3);
+  scene.receive_status(25, 0, 3);
   EXPECT_EQ(scene.report(1).run, 2);
   EXPECT_EQ(scene.output().ledger.at(1).run, 2);
   EXPECT_EQ(scene.send_next(), 1);
@@ -61,7 +61,7 @@ TEST(NewRun, TakesInAReportRepeatedJustBefore) {
   scene.wait(60);
   scene.post(1);
   scene.wait(5);
-  scene.hear(25, 0, 3);
+  scene.receive_status(25, 0, 3);
   EXPECT_EQ(scene.report(1).run, 2);
   EXPECT_EQ(scene.send_next(), 1);
 }
@@ -71,16 +71,16 @@ TEST(NewRun, HoldsReportsThatTheOperatorSentBefore) {
   scene.post_queued(1);
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
   scene.wait(11);
-  scene.hear(25, 0, 3);
+  scene.receive_status(25, 0, 3);
   EXPECT_EQ(scene.state(1), Held);
 }
 
 TEST(DoubtAtANewRun, BelongsToTheNewRun) {
   Scene scene;
   scene.post(1);
-  scene.lose();
+  scene.lose_answer();
   scene.wait(5);
-  scene.hear(25, 0, 3);
+  scene.receive_status(25, 0, 3);
   EXPECT_EQ(scene.report(1).run, 2);
   EXPECT_EQ(scene.report(1).before, std::nullopt) << "counted in the run before";
   EXPECT_FALSE(scene.reports().is_asking(scene.report(1)));
@@ -95,12 +95,12 @@ TEST(DoubtAtANewRun, BelongsToTheNewRun) {
 TEST(DoubtAtANewRun, StaysInItsRunIfOlderThanItsLastStatus) {
   Scene scene;
   scene.post(1);
-  scene.lose();
+  scene.lose_answer();
   for (int i = 0; i < 30; ++i) {
     scene.wait(1);
-    scene.hear(20, 0, 101);  // an administrative stop keeps it in doubt
+    scene.receive_status(20, 0, 101);  // an administrative stop keeps it in doubt
   }
-  scene.hear(25, 0, 3);
+  scene.receive_status(25, 0, 3);
   EXPECT_EQ(scene.report(1).run, 1);
   EXPECT_THAT(scene.report(1).note, HasSubstr("a new run began before the counts could tell"));
   scene.post(1);
@@ -117,7 +117,7 @@ TEST(DeclaredRun, BeginsLikeADetectedOne) {
   EXPECT_EQ(scene.reports().declare_new_run(scene.time()), 2);
   EXPECT_EQ(scene.state(1), Held);
   EXPECT_EQ(scene.output().run->why, "the operator declared it");
-  scene.hear(25, 0, 3);
+  scene.receive_status(25, 0, 3);
   EXPECT_EQ(scene.reports().run().number, 2) << "no further run";
 }
 
@@ -141,10 +141,10 @@ TEST_F(ReportInFlightAtADeclaration, IsJoinedByARepeat) {
 }
 
 TEST_F(ReportInFlightAtADeclaration, IsInDoubtInTheNewRunIfItsAnswerIsLost) {
-  scene_.lose();
+  scene_.lose_answer();
   EXPECT_EQ(scene_.report(1).run, 2);
   EXPECT_EQ(scene_.report(1).before, std::nullopt);
-  scene_.hear(25, 0, 3);
+  scene_.receive_status(25, 0, 3);
   scene_.post(1);
   EXPECT_EQ(scene_.count(), 1);
 }
@@ -174,11 +174,11 @@ TEST(SilentCommandPost, GetsOnlyNewReportsIfItHasNoStatus) {
   scene.wait(16);
   scene.post(1);
   EXPECT_EQ(scene.send_next(), 0);
-  scene.reports().status_failed(NoStatus::Other, scene.time());
+  scene.reports().on_status_failed(NoStatus::Other, scene.time());
   EXPECT_EQ(scene.send_next(), 1);
   scene.answer(answer_of(429));
   scene.wait(11);
-  scene.reports().status_failed(NoStatus::Other, scene.time());
+  scene.reports().on_status_failed(NoStatus::Other, scene.time());
   EXPECT_EQ(scene.send_next(), 0) << "its run may be over";
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
   EXPECT_EQ(scene.send_next(), 1);
@@ -188,7 +188,7 @@ TEST(SilentCommandPost, GetsNoReportIfItCannotBeReached) {
   Scene scene;
   scene.wait(16);
   scene.post(1);
-  scene.reports().status_failed(NoStatus::NoAnswer, scene.time());
+  scene.reports().on_status_failed(NoStatus::NoAnswer, scene.time());
   EXPECT_EQ(scene.send_next(), 0);
   EXPECT_THAT(scene.undecided(), IsEmpty());
 }

@@ -22,12 +22,12 @@ class RunOne : public testing::Test {
   /// A status after that time, by the clock of the run.
   void pass(double seconds, std::int64_t remaining, std::int64_t score) {
     scene_.wait(seconds);
-    scene_.hear(remaining, score);
+    scene_.receive_status(remaining, score);
   }
   /// The same, with another clock.
   void pass(double seconds, std::int64_t remaining, std::int64_t score, double clock) {
     scene_.wait(seconds);
-    scene_.hear(remaining, score, clock);
+    scene_.receive_status(remaining, score, clock);
   }
   /// Report `number`, a repeat of report 1, is held.
   void expect_held_repeat(std::int64_t number) {
@@ -60,9 +60,9 @@ TEST_F(GrantedReport, GivesARepeatTheRecordedAnswerIfNoNameIsKnown) {
   Scene nameless;
   nameless.record(1, "");
   nameless.wait(1);
-  nameless.hear(19, 0);
+  nameless.receive_status(19, 0);
   nameless.wait(10);
-  nameless.hear(22, 0);
+  nameless.receive_status(22, 0);
   EXPECT_EQ(nameless.answer_to(nameless.post(1)).status, 201);
   EXPECT_EQ(nameless.count(), 1u);
 }
@@ -77,7 +77,7 @@ TEST_F(GrantedReport, HoldsNoQueuedReport) {
 TEST_F(GrantedReport, IsInTheCountThatDecidesTheNextDoubt) {
   pass(10, 22, 1);
   scene_.post(2);
-  scene_.lose();
+  scene_.lose_answer();
   pass(1, 21, 1);
   pass(1, 21, 1);
   EXPECT_EQ(scene_.state(2), Settled);
@@ -87,7 +87,7 @@ TEST_F(GrantedReport, IsInTheCountThatDecidesTheNextDoubt) {
 /// The report is recorded, and another one is granted: the count looks as if it was not recorded.
 TEST_F(GrantedReport, LeavesADoubtToTheOperator) {
   scene_.post(2);
-  scene_.lose();
+  scene_.lose_answer();
   pass(1, 18, 1);
   for (int i = 0; i < 20; ++i) pass(1, 19, 1);
   EXPECT_EQ(scene_.send_next(), 0);
@@ -104,7 +104,7 @@ TEST_F(GrantedReport, LeavesADoubtToTheOperator) {
 
 TEST_F(GrantedReport, LeavesADoubtToTheOperatorEvenIfTheDiskIsFull) {
   scene_.post(2);
-  scene_.lose();
+  scene_.lose_answer();
   pass(1, 18, 1);
   scene_.output().full = true;
   pass(1, 19, 1);
@@ -181,7 +181,7 @@ TEST_F(CountUpAlone, QueuesNoHeldReportAgainIfItsRepeatWasSent) {
 
 TEST_F(CountUpAlone, LeavesAnOlderDoubtToTheOperator) {
   scene_.post(2);
-  scene_.lose();
+  scene_.lose_answer();
   for (int i = 0; i < 30; ++i) pass(1, 19, 1, 102);
   pass(1, 20, 1, 102);
   scene_.record(3, "1");
@@ -229,7 +229,7 @@ TEST_F(TwoSigns, AreTheOperatorsWithoutAName) {
   scene_.record(2, "");
   expect_held_repeat(3);
   scene_.restart();
-  scene_.hear(24, 0, 4);
+  scene_.receive_status(24, 0, 4);
   EXPECT_EQ(scene_.state(3), Held);
 }
 
@@ -374,7 +374,7 @@ TEST_F(AnotherNameAlone, HoldsARepeatIfNoEarlierStatusIsKnown) {
   run.status_clock.reset();
   scene_.output().runs[1] = run;
   scene_.restart();
-  scene_.reports().status_failed(NoStatus::Other, scene_.time());
+  scene_.reports().on_status_failed(NoStatus::Other, scene_.time());
   scene_.post_queued(2);
   ASSERT_EQ(scene_.send_next(), 2);
   scene_.answer(recorded_answer(0, "scored", "2"));
@@ -417,7 +417,7 @@ TEST_F(AnotherNameAlone, EndsWithTheFirstNameBeforeAStatus) {
 
 TEST_F(RunOne, AreNeverUndoneIfTheTeamChanges) {
   scene_.wait(1);
-  scene_.reports().status_heard({1, 102, 19, "other"}, scene_.time().now, scene_.time());
+  scene_.reports().on_status({1, 102, 19, "other"}, scene_.time().now, scene_.time());
   scene_.record(2, "1");
   EXPECT_EQ(scene_.reports().run().number, 2);
   scene_.post(1);

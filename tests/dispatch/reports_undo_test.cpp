@@ -125,11 +125,11 @@ TEST_F(Undo, LeavesTheReportHeldInANewRun) {
 TEST_F(Undo, LeavesTheReportHeldIfANewRunOnlySeemedToBegin) {
   scene_.record(1, "1");
   scene_.wait(1);
-  scene_.hear(19, 0);
+  scene_.receive_status(19, 0);
   scene_.compose(10);
   const double clock = scene_.run_clock();
   scene_.wait(1);
-  scene_.hear(20, 0, clock);  // the count rose while the clock stood
+  scene_.receive_status(20, 0, clock);  // the count rose while the clock stood
   ASSERT_EQ(scene_.reports().run().number, 2);
   scene_.record(30, "1");
   ASSERT_EQ(scene_.reports().run().number, 1);
@@ -200,7 +200,7 @@ TEST_F(Undo, RetriesItsEndIfTheDiskIsFull) {
 TEST_F(Undo, NeedsNoStatus) {
   scene_.compose();
   scene_.wait(30);
-  scene_.reports().status_failed(NoStatus::Other, scene_.time());
+  scene_.reports().on_status_failed(NoStatus::Other, scene_.time());
   EXPECT_EQ(scene_.send_next(), 1);
 }
 

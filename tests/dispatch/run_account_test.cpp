@@ -20,7 +20,7 @@ class RunAccountTest : public testing::Test {
   icd::RunStatus status(std::int64_t remaining, std::int64_t score) const {
     return {score, now_, remaining, "adit"};
   }
-  void hear(std::int64_t remaining, std::int64_t score) {
+  void receive_status(std::int64_t remaining, std::int64_t score) {
     account_.on_status(status(remaining, score), time());
     account_.settle(status(remaining, score), 0, time());
   }
@@ -44,7 +44,7 @@ TEST_F(RunAccountTest, ExpectsNothingBeforeTheFirstStatus) {
 }
 
 TEST_F(RunAccountTest, AStatusVouchesUntilTheNextMayBeSent) {
-  hear(20, 3);
+  receive_status(20, 3);
   EXPECT_TRUE(account_.is_fresh(at(now_ + 15).now));
   EXPECT_FALSE(account_.is_fresh(at(now_ + 16).now));
   account_.set_spacing(std::chrono::seconds(20));
@@ -53,7 +53,7 @@ TEST_F(RunAccountTest, AStatusVouchesUntilTheNextMayBeSent) {
 }
 
 TEST_F(RunAccountTest, ExpectsTheLastStatusAndItsOwnReports) {
-  hear(20, 3);
+  receive_status(20, 3);
   answer("scored", 1);
   answer("scored", 0);
   now_ += 7;
@@ -61,28 +61,28 @@ TEST_F(RunAccountTest, ExpectsTheLastStatusAndItsOwnReports) {
 }
 
 TEST_F(RunAccountTest, ExpectsNothingDuringADoubt) {
-  hear(20, 3);
-  account_.lose();
+  receive_status(20, 3);
+  account_.forget_expected();
   EXPECT_EQ(account_.expected_status(time().now), std::nullopt);
-  hear(19, 3);
+  receive_status(19, 3);
   EXPECT_EQ(account_.expected_status(time().now), status(19, 3));
 }
 
 TEST_F(RunAccountTest, ExpectsNothingSoonAfterASettlement) {
-  hear(20, 3);
-  account_.lose(at(110).now);
-  hear(20, 3);
+  receive_status(20, 3);
+  account_.forget_expected(at(110).now);
+  receive_status(20, 3);
   now_ = 109;
-  hear(19, 3);
+  receive_status(19, 3);
   EXPECT_EQ(account_.expected_status(time().now), std::nullopt);
   now_ = 110;
-  hear(19, 3);
+  receive_status(19, 3);
   EXPECT_EQ(account_.expected_status(time().now), status(19, 3));
   EXPECT_THAT(account_.run().unreliable, IsEmpty());
 }
 
 TEST_F(RunAccountTest, ExpectsNothingWhileReportsAreNotScored) {
-  hear(20, 3);
+  receive_status(20, 3);
   answer("admin stop", 0);
   EXPECT_EQ(account_.expected_status(time().now), std::nullopt);
   answer("scored", 0);
@@ -90,85 +90,85 @@ TEST_F(RunAccountTest, ExpectsNothingWhileReportsAreNotScored) {
 }
 
 TEST_F(RunAccountTest, DistrustsACountIfItIsWrongTwice) {
-  hear(20, 3);
-  hear(19, 3);
+  receive_status(20, 3);
+  receive_status(19, 3);
   EXPECT_EQ(account_.expected_status(time().now), std::nullopt) << "wrong once";
   EXPECT_THAT(account_.run().unreliable, IsEmpty());
-  hear(19, 3);
+  receive_status(19, 3);
   EXPECT_EQ(account_.expected_status(time().now), std::nullopt);
   EXPECT_THAT(account_.run().unreliable, HasSubstr("another sender may report with this token"));
   EXPECT_EQ(output_.run->unreliable, account_.run().unreliable) << "on disk";
 }
 
 TEST_F(RunAccountTest, AccusesNoSenderIfTheCountsNeverMove) {
-  hear(20, 3);
+  receive_status(20, 3);
   answer("scored", 1);
-  hear(20, 3);
-  hear(20, 3);
+  receive_status(20, 3);
+  receive_status(20, 3);
   EXPECT_EQ(account_.run().unreliable, Run::kCountsStand);
   EXPECT_EQ(account_.expected_status(time().now), std::nullopt);
 }
 
 TEST_F(RunAccountTest, DistrustsCountsThatStopMoving) {
-  hear(20, 3);
+  receive_status(20, 3);
   answer("scored", 0);
-  hear(19, 3);
+  receive_status(19, 3);
   answer("scored", 0);
-  hear(19, 3);
-  hear(19, 3);
+  receive_status(19, 3);
+  receive_status(19, 3);
   EXPECT_THAT(account_.run().unreliable, HasSubstr("the counts may have been corrected"));
 }
 
 TEST_F(RunAccountTest, ForgivesADelayedCount) {
-  hear(20, 3);
+  receive_status(20, 3);
   answer("scored", 0);
-  hear(20, 3);
-  hear(19, 3);
+  receive_status(20, 3);
+  receive_status(19, 3);
   EXPECT_EQ(account_.expected_status(time().now), status(19, 3));
   EXPECT_THAT(account_.run().unreliable, IsEmpty());
 }
 
 TEST_F(RunAccountTest, ExpectsTheCountWithGrantedReports) {
-  hear(20, 3);
+  receive_status(20, 3);
   now_ = 110;
   account_.grant();
-  hear(23, 3);
+  receive_status(23, 3);
   EXPECT_EQ(account_.expected_status(time().now), status(23, 3));
   EXPECT_THAT(account_.run().unreliable, IsEmpty());
 }
 
 TEST_F(RunAccountTest, ExpectsNothingAfterAGrantUntilItsOwnReportsMustBeCounted) {
-  hear(20, 3);
+  receive_status(20, 3);
   answer("scored", 0);
   now_ = 110;
   account_.grant();
-  hear(21, 3);
+  receive_status(21, 3);
   EXPECT_EQ(account_.expected_status(time().now), std::nullopt) << "the report may be counted later";
   now_ = 111;
-  hear(21, 3);
+  receive_status(21, 3);
   EXPECT_EQ(account_.expected_status(time().now), status(21, 3));
 }
 
 TEST_F(RunAccountTest, AllowsNewCountsBeforeTheRunStarts) {
   now_ = 0;
-  hear(5, 0);
+  receive_status(5, 0);
   now_ = 10;
-  hear(25, 0);
+  receive_status(25, 0);
   EXPECT_EQ(account_.expected_status(time().now), status(25, 0));
 }
 
 TEST_F(RunAccountTest, TrustsTheCountInTheNextRun) {
-  hear(20, 3);
+  receive_status(20, 3);
   account_.distrust("another sender", time().stamp);
   account_.begin({"the operator declared it", {}}, 0, std::nullopt, {}, time());
   EXPECT_EQ(account_.run().number, 2);
   EXPECT_EQ(account_.expected_status(time().now), std::nullopt);
-  hear(25, 0);
+  receive_status(25, 0);
   EXPECT_EQ(account_.expected_status(time().now), status(25, 0));
 }
 
 TEST_F(RunAccountTest, IsFreshForFifteenSecondsAfterAnAnswer) {
-  hear(20, 3);
+  receive_status(20, 3);
   EXPECT_TRUE(account_.is_fresh(at(115).now));
   EXPECT_FALSE(account_.is_fresh(at(115.1).now));
   now_ = 114;
@@ -181,36 +181,36 @@ TEST_F(RunAccountTest, DetectsACommandPostWithoutAStatus) {
   account_.on_dumb(time().now);
   EXPECT_TRUE(account_.is_dumb(time().now));
   EXPECT_FALSE(account_.is_dumb(at(116).now)) << "too old";
-  hear(20, 3);
+  receive_status(20, 3);
   EXPECT_FALSE(account_.is_dumb(time().now));
 }
 
 TEST_F(RunAccountTest, WritesTheRunClockSeldom) {
-  hear(20, 3);
+  receive_status(20, 3);
   now_ = 101;
-  hear(20, 3);
+  receive_status(20, 3);
   EXPECT_TRUE(output_.run->status_clock->runs);
   const auto writes = output_.writes;
-  for (now_ = 102; now_ < 250; ++now_) hear(20, 3);
+  for (now_ = 102; now_ < 250; ++now_) receive_status(20, 3);
   EXPECT_EQ(output_.writes, writes);
   now_ = 252;
-  hear(20, 3);
+  receive_status(20, 3);
   EXPECT_EQ(output_.writes, writes + 1);
   EXPECT_EQ(output_.run->last->run_clock, 252);
 }
 
 TEST_F(RunAccountTest, WritesTheReportsLeftAtOnce) {
-  hear(20, 3);
+  receive_status(20, 3);
   now_ = 101;
-  hear(19, 3);
+  receive_status(19, 3);
   EXPECT_EQ(output_.run->last->remaining_reports, 19) << "it shows a new run";
 }
 
 TEST_F(RunAccountTest, MeasuresASilenceByMonotonicTime) {
   now_ = 99;
-  hear(20, 3);
+  receive_status(20, 3);
   now_ = 100;
-  hear(20, 3);
+  receive_status(20, 3);
   const Time set{at(105).now, at(105 + 3600).stamp};
   EXPECT_EQ(account_.another(icd::RunStatus{3, 105, 20, "adit"}, set), std::nullopt);
   EXPECT_THAT(account_.another(icd::RunStatus{3, 105, 20, "adit"}, at(3700))->why, HasSubstr("of silence"));
@@ -218,9 +218,9 @@ TEST_F(RunAccountTest, MeasuresASilenceByMonotonicTime) {
 
 TEST_F(RunAccountTest, MeasuresASilenceAcrossARestart) {
   now_ = 99;
-  hear(20, 3);
+  receive_status(20, 3);
   now_ = 100;
-  hear(20, 3);
+  receive_status(20, 3);
   RunAccount again(book_);
   again.open({*output_.run}, 1, "");
   EXPECT_THAT(again.another(icd::RunStatus{3, 105, 20, "adit"}, at(3700))->why, HasSubstr("of silence"));

@@ -319,10 +319,10 @@ TEST(NextMap, IsTheEarlierOneInAResumedRun) {
 
 TEST(RunWatch, NeedsAStatusClockThatRan) {
   dispatch::Run run = run_at(600);
-  EXPECT_TRUE(tells_of_another(run));
+  EXPECT_TRUE(can_show_other_run(run));
   run.status_clock->runs = false;
-  EXPECT_FALSE(tells_of_another(run)) << "although the answers' clock runs";
-  EXPECT_FALSE(tells_of_another({}));
+  EXPECT_FALSE(can_show_other_run(run)) << "although the answers' clock runs";
+  EXPECT_FALSE(can_show_other_run({}));
 }
 
 }  // namespace

@@ -68,10 +68,10 @@ TEST(Runs, FindRunsThatMayStillGoOn) {
   fourth.may_be = 3;
   Runs runs;
   runs.open({run(1, 1), run(2, 2), third, fourth}, 4);
-  EXPECT_TRUE(runs.may_be_present(3));
-  EXPECT_TRUE(runs.may_be_present(2));
-  EXPECT_FALSE(runs.may_be_present(1));
-  EXPECT_FALSE(runs.may_be_present(4));
+  EXPECT_TRUE(runs.can_be_present(3));
+  EXPECT_TRUE(runs.can_be_present(2));
+  EXPECT_FALSE(runs.can_be_present(1));
+  EXPECT_FALSE(runs.can_be_present(4));
 }
 
 TEST(Runs, FindRunsOfThisCommandPost) {

@@ -40,7 +40,7 @@ class FakeOutput final : public Output {
     }
     return true;
   }
-  void tell(ClientId client, const ClientAnswer& answer, const Report& report) override {
+  void answer_client(ClientId client, const ClientAnswer& answer, const Report& report) override {
     const bool own = !answer.sentence.empty();
     answers[client].push_back({.status = own ? static_cast<int>(answer.status) : report.status,
                                .sentence = answer.sentence,
@@ -76,7 +76,7 @@ class Scene {
 
   explicit Scene(const ReportRules& rules = {}) : rules_(rules) {
     restart();
-    hear(20, 0);
+    receive_status(20, 0);
   }
 
   Reports& reports() { return *reports_; }
@@ -101,13 +101,13 @@ class Scene {
   /// Kills the process and starts it from the disk.
   void restart(const std::string& post = "10.100.1.200:8000") {
     reports_ = std::make_unique<Reports>(rules_, output_);
-    reports_->clock_stepped(clock_step_);
+    reports_->on_clock_step(clock_step_);
     reports_->open(all_reports(), all_runs(), time(), post);
   }
   /// The settings name another Command Post; the process goes on.
   void move_to(const std::string& post) {
     auto next = std::make_unique<Reports>(rules_, output_);
-    next->carry_on(*reports_, time(), post);
+    next->adopt(*reports_, time(), post);
     reports_ = std::move(next);
   }
 
@@ -143,19 +143,21 @@ class Scene {
     post(x);
     answer(recorded_answer(0, "scored", run));
   }
-  void lose() { reports_->on_lost("no answer", time()); }
+  void lose_answer() { reports_->on_lost("no answer", time()); }
 
   /// A status with the expected run clock.
-  void hear(std::int64_t remaining, std::int64_t score) { hear(remaining, score, run_clock()); }
-  void hear(std::int64_t remaining, std::int64_t score, double clock) {
-    reports_->status_heard({score, clock, remaining, "adit"}, time().now, time());
+  void receive_status(std::int64_t remaining, std::int64_t score) {
+    receive_status(remaining, score, run_clock());
+  }
+  void receive_status(std::int64_t remaining, std::int64_t score, double clock) {
+    reports_->on_status({score, clock, remaining, "adit"}, time().now, time());
   }
   double run_clock() const { return now_; }
   /// The same status each second.
   void repeat_status(double seconds, std::int64_t remaining, std::int64_t score) {
     for (double end = now_ + seconds; now_ < end;) {
       wait(1);
-      hear(remaining, score);
+      receive_status(remaining, score);
     }
   }
 
@@ -164,7 +166,7 @@ class Scene {
   void repeat_stop(int seconds, double clock = 101) {
     for (int i = 0; i < seconds; ++i) {
       wait(1);
-      hear(20, 0, clock);
+      receive_status(20, 0, clock);
     }
   }
 

@@ -37,15 +37,15 @@ class WaitingClientsTest : public testing::Test {
 };
 
 TEST_F(WaitingClientsTest, HaveAReportEach) {
-  EXPECT_EQ(clients_.awaited_by(2), 8);
-  EXPECT_EQ(clients_.awaited_by(4), std::nullopt);
+  EXPECT_EQ(clients_.awaited_report(2), 8);
+  EXPECT_EQ(clients_.awaited_report(4), std::nullopt);
 }
 
 TEST_F(WaitingClientsTest, AreAnsweredOnce) {
-  clients_.tell_all(7);
+  clients_.answer_all(7);
   EXPECT_THAT(told(), ElementsAre(Pair(1, 7), Pair(3, 7)));
-  clients_.tell_all(7);
-  clients_.tell_all(9);
+  clients_.answer_all(7);
+  clients_.answer_all(9);
   EXPECT_THAT(told(), IsEmpty());
 }
 
@@ -74,9 +74,9 @@ TEST_F(WaitingClientsTest, AreDismissedExceptThoseOfAReportInFlight) {
 TEST_F(WaitingClientsTest, KeepTheirDeadlineAtAHandOver) {
   clients_.hand_over(7, book_.at(8));
   EXPECT_EQ(clients_.next_deadline(), at_second(20));
-  clients_.tell_all(7);
+  clients_.answer_all(7);
   EXPECT_THAT(told(), IsEmpty());
-  clients_.tell_all(8);
+  clients_.answer_all(8);
   EXPECT_THAT(told(), ElementsAre(Pair(1, 8), Pair(2, 8), Pair(3, 8)));
 }
 

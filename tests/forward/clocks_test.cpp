@@ -21,9 +21,9 @@ class ClocksTest : public testing::Test {
     clocks_.reset();
     journal_.reset();
     journal_.emplace(loop_, folder_.path() + "/journal");
-    journal::Carried carried = journal_->read();
+    journal::HandoverState carried = journal_->read();
     clocks_.emplace(loop_, *journal_, folder_.path());
-    clocks_->carry_on(carried, boot, newest_);
+    clocks_->restore(carried, boot, newest_);
   }
   double now() const { return loop_.stamp_now(); }
   /// Stamp of a robot's pose.
@@ -75,7 +75,7 @@ TEST(StampFloor, RemembersWhatIsKnownOfTheLedger) {
   floor.write({.floor = 50, .wall = 40, .least = 30, .ledger = {.reports = 2, .log = 3, .last = 9}});
   floor.remember({.reports = 4, .log = 1, .last = 12});
   EXPECT_EQ(floor.read(),
-            (StampFloor::Kept{
+            (StampFloor::StoredFloor{
                 .floor = 50, .wall = 40, .least = 30, .ledger = {.reports = 4, .log = 3, .last = 12}}));
   folder.put(StampFloor::kFile, "half");
   floor.remember({.reports = 4});
@@ -174,7 +174,7 @@ TEST_F(ClocksTest, FollowAClockFarAheadOnceAnotherSourceAgrees) {
     };
     boot("second");
     EXPECT_NEAR(now(), before, 2 * StampFloor::kAhead);
-    EXPECT_TRUE(clocks_->hear(before + kYears));
+    EXPECT_TRUE(clocks_->correct(before + kYears));
     EXPECT_NEAR(clocks_->clock_step().seconds_between(before, now()), kYears, 1) << "the box was off";
     clocks_->set_known_time(agrees ? before + kYears : before);
     keep();
@@ -236,13 +236,13 @@ TEST_F(ClocksTest, DetectAClockStepWithoutElapsedTime) {
   loop_.set_wall(before + 6 * kFar);
   restart("another start");
   restart("another start");  // a process start; the step is unconfirmed
-  EXPECT_TRUE(clocks_->hear(loop_.wall_now()));
+  EXPECT_TRUE(clocks_->correct(loop_.wall_now()));
   EXPECT_NEAR(clocks_->clock_step().by, 5 * kFar, 1);
   EXPECT_NEAR(clocks_->clock_step().seconds_between(before, now()), kFar, 1) << "time off";
   const dispatch::ClockStep step = clocks_->clock_step();
   restart("another start");
   EXPECT_EQ(clocks_->clock_step(), step) << "kept at a process start";
-  EXPECT_FALSE(clocks_->hear(loop_.wall_now() + kFar));
+  EXPECT_FALSE(clocks_->correct(loop_.wall_now() + kFar));
 }
 
 TEST_F(ClocksTest, MeasureTheTimeThatTheMachineWasOff) {
@@ -257,7 +257,7 @@ TEST_F(ClocksTest, MeasureTheTimeThatTheMachineWasOff) {
     loop_.set_stamp(before + kFar);  // the clock is ahead at the start
     loop_.set_wall(known + kFar);
     restart("second");
-    if (each.there) clocks_->hear(known + *each.there);
+    if (each.there) clocks_->correct(known + *each.there);
     EXPECT_NEAR(clocks_->clock_step().seconds_between(before, now()), each.off, 1) << each.there.value_or(0);
     std::filesystem::remove(folder_.path() + '/' + StampFloor::kFile);
   }

@@ -31,20 +31,20 @@ queues::QueuedMap waiting(icd::MapUpdate map, queues::Precision precision = queu
   return waiting;
 }
 
-constexpr pack::Hurry kFast{.bytes_per_second = 1e10, .slowness = 1, .longest = 1},
+constexpr pack::EffortInput kFast{.bytes_per_second = 1e10, .slowness = 1, .longest = 1},
     kMedium{.bytes_per_second = 6e7, .slowness = 1, .longest = 1},
     kSlow{.bytes_per_second = 1e5, .slowness = 1, .longest = 1};
 
 TEST(CloudEffort, IsNoneOnAFastLink) {
   const icd::MapUpdate cloud = large_cloud("r1");
-  const Packed hurried = pack_map(waiting(cloud), {.hurry = kFast});
+  const PackedMap hurried = pack_map(waiting(cloud), {.hurry = kFast});
   EXPECT_EQ(hurried.effort, pack::Effort::None);
   EXPECT_GE(hurried.body.size(), cloud.data.bytes.size());
 }
 
 TEST(CloudEffort, EstimatesThePackedSize) {
   const icd::MapUpdate cloud = large_cloud("r1");
-  const Packed full = pack_map(waiting(cloud)), hurried = pack_map(waiting(cloud), {.hurry = kMedium});
+  const PackedMap full = pack_map(waiting(cloud)), hurried = pack_map(waiting(cloud), {.hurry = kMedium});
   ASSERT_EQ(hurried.effort, pack::Effort::None);
   EXPECT_EQ(full.full_size, full.body.size());
   EXPECT_NEAR(static_cast<double>(hurried.full_size), static_cast<double>(full.full_size),
@@ -53,7 +53,7 @@ TEST(CloudEffort, EstimatesThePackedSize) {
 
 TEST(CloudEffort, IsFullOnASlowLink) {
   const icd::MapUpdate cloud = large_cloud("r1");
-  const Packed hurried = pack_map(waiting(cloud), {.hurry = kSlow});
+  const PackedMap hurried = pack_map(waiting(cloud), {.hurry = kSlow});
   EXPECT_EQ(hurried.effort, pack::Effort::Full);
   EXPECT_EQ(hurried.body, pack_map(waiting(cloud)).body);
 }
@@ -61,7 +61,7 @@ TEST(CloudEffort, IsFullOnASlowLink) {
 TEST(CloudEffort, RoundsAsRequested) {
   const icd::MapUpdate cloud = large_cloud("r1");
   for (const auto precision : {queues::Precision::Millimetre, queues::Precision::EightMillimetres}) {
-    const Packed hurried = pack_map(waiting(cloud, precision), {.hurry = kFast});
+    const PackedMap hurried = pack_map(waiting(cloud, precision), {.hurry = kFast});
     EXPECT_EQ(hurried.body, pack_map(waiting(cloud, precision)).body);
     EXPECT_EQ(hurried.precision, precision);
   }
@@ -73,7 +73,7 @@ class CloudOnAFastLink : public MapsToManualEndpoint {
     settings_.command_post.rates.map_hz = 10;
     settings_.command_post.budget_mbit = 100'000;
     maps_->on_settings_changed();
-    maps_->endpoint_changed(icd::BearerToken::parse("a-token"));  // the link gets the budget
+    maps_->on_endpoint_changed(icd::BearerToken::parse("a-token"));  // the link gets the budget
   }
   std::uint64_t sent(const char* robot) const {
     const auto found = counts_.rows().find({TrafficKind::Cloud, robot});
@@ -86,9 +86,9 @@ TEST_F(CloudOnAFastLink, IsSentUnpackedAfterWaiting) {
   const icd::MapUpdate cloud = large_cloud("second");
   for (std::size_t tries = 1; tries <= 20 && sent("second") < cloud.data.bytes.size(); ++tries) {
     const std::size_t before = post_.received().size();
-    take(grid_of("first", 10));
+    accept(grid_of("first", 10));
     ASSERT_TRUE(loop::turn_until(loop_, [&] { return post_.received().size() > before; }));
-    take(cloud);
+    accept(cloud);
     for (int i = 0; i < 2; ++i) post_.answer("200 OK");
     ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_->waiting({TrafficKind::Cloud, "second"}) == 0; }));
   }

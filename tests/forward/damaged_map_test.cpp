@@ -73,7 +73,7 @@ TEST_F(DamagedMap, IsDroppedAfterAManualRetry) {
 TEST_F(DamagedMap, IsNotSentIfThisProcessAcceptedIt) {
   icd::MapUpdate map = grid_of("first", 64);
   map.data.compression = icd::Compression::Gzip;
-  take(map);
+  accept(map);
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return row().failed == 1; }));
   EXPECT_TRUE(row().last_sentence.starts_with("its stored copy is damaged: ")) << row().last_sentence;
   EXPECT_EQ(maps_->waiting({TrafficKind::Grid, "first"}), 0U);
@@ -83,9 +83,9 @@ TEST_F(DamagedMap, LeavesItsStitchedNeighbour) {
   keep(kOne, "first", 0);
   keep(kOther, "first", 1);
   damage(kOne);
-  maps_->endpoint_changed(std::nullopt);  // without a token, maps stay queued
+  maps_->on_endpoint_changed(std::nullopt);  // without a token, maps stay queued
   restore();
-  maps_->endpoint_changed(icd::BearerToken::parse("a-token"));
+  maps_->on_endpoint_changed(icd::BearerToken::parse("a-token"));
   post_.answer("200 OK");
   EXPECT_TRUE(receives({"first"}));
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return row().forwarded == 1; }));
@@ -103,8 +103,8 @@ class FaultyMap : public DamagedMap {
       {
         spool::Spool before(folder);
         (void)before.read();
-        before.work_begins({kOne});
-        before.work_overruns();
+        before.begin_work({kOne});
+        before.record_overrun();
         fs::copy_file(folder / "at-work", killed);
       }
       fs::rename(killed, folder / "at-work");
@@ -132,7 +132,7 @@ TEST_F(FaultyMap, IsPutAsideWithItsSenderAndReasonUntilTheOperatorDecides) {
 }
 
 TEST_F(FaultyMap, IsPutAsideAtItsNextFaultIfTheOperatorSendsItAgain) {
-  maps_->endpoint_changed(std::nullopt);  // without a token, maps stay queued
+  maps_->on_endpoint_changed(std::nullopt);  // without a token, maps stay queued
   maps_->resend(grid_in("first", 0), [](bool) { return true; }, {}, /*faults=*/3);
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return maps_->waiting({TrafficKind::Grid, "first"}) == 1; }));
   const auto kept = spool::Spool(folder_.path()).read();
@@ -159,7 +159,7 @@ class SlowMap : WithTime, public MapsToManualEndpoint {
 };
 
 TEST_F(SlowMap, IsAtFaultIfItTakesLongerThanTheWatchdogAllows) {
-  take(cloud_along_x("first", std::vector<float>(3'000'000, 1)));
+  accept(cloud_along_x("first", std::vector<float>(3'000'000, 1)));
   EXPECT_TRUE(loop::turn_until(loop_, [&] {
     time_.pass(loop::Watchdog::kLongestJob);
     return work() == "1048577 0 0 1\nx";

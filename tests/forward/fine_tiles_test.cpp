@@ -25,8 +25,8 @@ class FineTilesTest : public testing::Test {
 
   std::shared_ptr<Answer> asked(const std::string& robot, const TileIndex& at) {
     auto answer = std::make_shared<Answer>();
-    picture.finer().tile({robot, picture::LayerKind::Grid}, at,
-                         [answer](auto tile) { *answer = std::move(tile); });
+    picture.fine_map().tile({robot, picture::LayerKind::Grid}, at,
+                            [answer](auto tile) { *answer = std::move(tile); });
     return answer;
   }
   /// Null: no tile.
@@ -44,8 +44,8 @@ class FineTilesTest : public testing::Test {
     picture::Packer{}.unpack(*its, pixels);
     return pixels[picture::index_of(0, 0)];
   }
-  std::optional<picture::Finer> finer(const std::string& robot, std::uint64_t since = 0) {
-    return picture.finer().finer({robot, picture::LayerKind::Grid}, since);
+  std::optional<picture::FinerLevels> finer(const std::string& robot, std::uint64_t since = 0) {
+    return picture.fine_map().finer_levels({robot, picture::LayerKind::Grid}, since);
   }
   void forward(const icd::MapUpdate& map) {
     const int before = changes;

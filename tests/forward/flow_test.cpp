@@ -51,7 +51,7 @@ class FlowTest : public testing::Test {
   icd::Checked<void> take_poses(std::vector<icd::NamedPose> poses, double stamp) {
     return flow_->accept({.header = {stamp}, .poses = std::move(poses)}, sender_);
   }
-  journal::Carried kept() const { return journal::left_in(folder_.path() + "/journal"); }
+  journal::HandoverState kept() const { return journal::left_in(folder_.path() + "/journal"); }
   double kept_x(const char* robot) const {
     return kept().robots().at(*icd::RobotName::parse(robot)).posted.pose.position.x;
   }

@@ -37,9 +37,9 @@ class StoredGrid : public MapsToManualEndpoint {
 
 TEST_F(StoredGrid, IsSentUnchangedAfterWaiting) {
   const icd::MapUpdate first = kept_grid("first", 1100), second = kept_grid("second", 1100);
-  take(first);
+  accept(first);
   ASSERT_TRUE(receives({"first"}));
-  take(second);
+  accept(second);
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_->queued_bytes() == 0 && !maps_->packing(); }));
   for (int i = 0; i < 2; ++i) post_.answer("200 OK");
   ASSERT_TRUE(are_delivered());
@@ -51,7 +51,7 @@ TEST_F(StoredGrid, IsCompressedForASlowLink) {
   settings_.command_post.budget_mbit = 1;
   maps_->on_settings_changed();
   const icd::MapUpdate large = kept_grid("second", 1100);
-  take(large);
+  accept(large);
   post_.answer("200 OK");
   ASSERT_TRUE(are_delivered());
   EXPECT_LT(sent("second"), large.data.bytes.size() / 2);

@@ -79,7 +79,7 @@ class MapsToManualEndpoint : public testing::Test, protected MapsParts {
     maps_.emplace(loop_, servers_, workers_, writer_, spool_, settings_, icd::BearerToken::parse("a-token"),
                   counts_, rejected_, random_, journal_, [](const icd::MapUpdate&) {});
   }
-  void take(icd::MapUpdate map) {
+  void accept(icd::MapUpdate map) {
     bool taken = false;
     maps_->accept(std::move(map), {.bytes = 10}, nullptr,
                   [&](const icd::Checked<void>& said) { taken = said.has_value(); });

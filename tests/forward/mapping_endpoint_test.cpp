@@ -41,7 +41,7 @@ class MappingEndpoint : public testing::Test, protected MapsParts {
   bool is_left_at_once(Sends& sends) {
     if (!loop::turn_until(loop_, [&] { return silent_.came == 1; })) return false;
     settings_.command_post.mapping = there_.address();
-    sends.endpoint_changed(token_);
+    sends.on_endpoint_changed(token_);
     return loop::turn_until(
         loop_, [&] { return there_.came == 1; }, settings_.command_post.timeouts.mapping_answer / 3);
   }

@@ -12,7 +12,7 @@ namespace {
 
 class QueuedClouds : public testing::Test, protected MapsParts {
  protected:
-  void take(const std::vector<float>& xs) {
+  void accept(const std::vector<float>& xs) {
     bool told = false;
     maps_.accept(cloud_along_x("r1", xs), {.bytes = 10}, nullptr, [&](const icd::Checked<void>& taken) {
       EXPECT_TRUE(taken);
@@ -30,21 +30,21 @@ class QueuedClouds : public testing::Test, protected MapsParts {
 };
 
 TEST_F(QueuedClouds, AreReplacedByOneWithAllTheirPoints) {
-  take({1, 2});
+  accept({1, 2});
   EXPECT_EQ(row().clouds, "");
-  take({1, 2, 3});
-  take({3, 4, 2, 1});
+  accept({1, 2, 3});
+  accept({3, 4, 2, 1});
   EXPECT_TRUE(becomes(1));
   EXPECT_EQ(row().clouds, "whole");
   EXPECT_EQ(row().replaced, 2);
 }
 
 TEST_F(QueuedClouds, StayIfANewerOneLacksAPoint) {
-  take({1, 2});
-  take({3, 1, 4});
+  accept({1, 2});
+  accept({3, 1, 4});
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return !row().clouds.empty(); }));
   EXPECT_EQ(row().clouds, "parts");
-  take({3, 1, 4, 5});
+  accept({3, 1, 4, 5});
   EXPECT_TRUE(becomes(2)) << "the part stays";
   EXPECT_EQ(row().replaced, 1);
 }
@@ -52,8 +52,8 @@ TEST_F(QueuedClouds, StayIfANewerOneLacksAPoint) {
 TEST_F(QueuedClouds, AreReplacedIfTheSettingIsWhole) {
   settings_.robots = {{.name = "r1", .alias = "", .clouds = queues::Clouds::Whole}};
   maps_.on_settings_changed();
-  take({1, 2});
-  take({7});
+  accept({1, 2});
+  accept({7});
   EXPECT_EQ(maps_.waiting(kClouds), 1);
   EXPECT_EQ(row().clouds, "whole");
 }
@@ -61,8 +61,8 @@ TEST_F(QueuedClouds, AreReplacedIfTheSettingIsWhole) {
 TEST_F(QueuedClouds, StayIfTheSettingIsParts) {
   settings_.robots = {{.name = "r1", .alias = "", .clouds = queues::Clouds::Parts}};
   maps_.on_settings_changed();
-  take({1, 2});
-  take({1, 2});
+  accept({1, 2});
+  accept({1, 2});
   ASSERT_TRUE(loop::turn_until_idle(loop_, writer_));
   EXPECT_EQ(maps_.waiting(kClouds), 2);
   EXPECT_EQ(row().clouds, "parts");

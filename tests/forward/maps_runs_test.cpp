@@ -135,7 +135,7 @@ class MapsAtARunChange : public testing::Test {
     flow_->start();
   }
   const dispatch::Run& run() const { return flow_->reports().run(); }
-  void hear(const RunState& says) {
+  void receive_status(const RunState& says) {
     post_.says(says);
     next_status();
   }
@@ -143,10 +143,10 @@ class MapsAtARunChange : public testing::Test {
     const auto is_idle = [this] { return !flow_->scoring().channel().busy(); };
     ASSERT_TRUE(loop::turn_until(loop_, is_idle));
     const auto heard = run().heard;
-    flow_->link_is_back();
+    flow_->on_link_up();
     ASSERT_TRUE(loop::turn_until(loop_, [&] { return run().heard != heard && is_idle(); }));
   }
-  void take(icd::MapUpdate map) {
+  void accept(icd::MapUpdate map) {
     bool is_taken = false;
     flow_->begin_map()->accept(std::move(map), sender_,
                                [&](const icd::Checked<void>& said) { is_taken = said.has_value(); });
@@ -156,7 +156,7 @@ class MapsAtARunChange : public testing::Test {
     return loop::turn_until(loop_, [&] { return flow_->maps().waiting({TrafficKind::Grid, "r1"}) == 0; });
   }
   void map_the_area() {
-    take(part_at(0, kWidth, 50));
+    accept(part_at(0, kWidth, 50));
     ASSERT_TRUE(all_arrive());
   }
   /// Queues two parts together while a distant one is packed. Returns the number of messages for them.
@@ -165,18 +165,18 @@ class MapsAtARunChange : public testing::Test {
     const auto until = let_go.get_future().share();
     for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i)
       flow_->workers().submit(loop::Urgency::OnTheWay, [until] { until.wait(); }, [] {});
-    take(part_at(10'000, 4, 1));
+    accept(part_at(10'000, 4, 1));
     const int before = post_.maps() + 1;
-    take(part_at(0, 4, 60));
-    take(part_at(kWidth - 4, 4, 61));
+    accept(part_at(0, 4, 60));
+    accept(part_at(kWidth - 4, 4, 61));
     let_go.set_value();
     EXPECT_TRUE(all_arrive());
     return post_.maps() - before;
   }
   /// The Command Post has the area in a running run.
   void begin_with_the_area() {
-    hear({.clock = 600});
-    hear({.clock = 601});
+    receive_status({.clock = 600});
+    receive_status({.clock = 601});
     map_the_area();
   }
   void map_both_ends_over(std::uint8_t between) {
@@ -201,18 +201,18 @@ class MapsAtARunChange : public testing::Test {
 
 TEST_F(MapsAtARunChange, KeepAnAreaIfTheClockGoesBack) {
   begin_with_the_area();
-  hear({.clock = 541});
+  receive_status({.clock = 541});
   ASSERT_EQ(run().number, 2);
   map_both_ends_over(50);
 }
 
 TEST_F(MapsAtARunChange, KeepAnAreaIfAnAnswerNamesTheOldRun) {
-  hear({.clock = 600});
-  hear({.clock = 601});
+  receive_status({.clock = 600});
+  receive_status({.clock = 601});
   ASSERT_TRUE(flow_->report({.type = "Rope", .position = {1, 2, 3}}, false));
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return run().id == "1"; }));
   map_the_area();
-  hear({.clock = 541, .left = 13});
+  receive_status({.clock = 541, .left = 13});
   ASSERT_EQ(run().number, 2);
   ASSERT_TRUE(flow_->report({.type = "Rope", .position = {40, 50, 60}}, false));
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return run().number == 1; }));
@@ -221,7 +221,7 @@ TEST_F(MapsAtARunChange, KeepAnAreaIfAnAnswerNamesTheOldRun) {
 
 TEST_F(MapsAtARunChange, KeepAnAreaIfAReportMayHaveBeenGranted) {
   begin_with_the_area();
-  hear({.clock = 601, .left = 15});
+  receive_status({.clock = 601, .left = 15});
   ASSERT_EQ(run().number, 2);
   map_both_ends_over(50);
 }
@@ -234,15 +234,15 @@ TEST_F(MapsAtARunChange, KeepAnAreaAfterALongStop) {
   known.front().heard -= 3000;
   ASSERT_TRUE(ledger_.write(known.front()));
   restart();
-  hear({.clock = 602});
+  receive_status({.clock = 602});
   ASSERT_EQ(run().number, 2);
   map_both_ends_over(50);
 }
 
 TEST_F(MapsAtARunChange, KeepAnAreaSentBeforeANewRunIsDetected) {
-  hear({.clock = 600});
-  hear({.clock = 601});
-  hear({.clock = 602});
+  receive_status({.clock = 600});
+  receive_status({.clock = 601});
+  receive_status({.clock = 602});
   post_.begins_run({.clock = 2, .left = 25, .run = "2"});
   map_the_area();
   next_status();
@@ -252,8 +252,8 @@ TEST_F(MapsAtARunChange, KeepAnAreaSentBeforeANewRunIsDetected) {
 
 TEST_F(MapsAtARunChange, AreStitchedIfOnlyTheOldRunHadTheArea) {
   begin_with_the_area();
-  hear({.clock = 602});
-  hear({.clock = 603});
+  receive_status({.clock = 602});
+  receive_status({.clock = 603});
   post_.begins_run({.clock = 2, .left = 25, .run = "2"});
   next_status();
   ASSERT_EQ(run().number, 2);

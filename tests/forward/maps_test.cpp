@@ -40,7 +40,7 @@ class MapsTest : public testing::Test, protected MapsParts {
   MapsTest() { settings_.queues.map_bytes = 100'000; }
 
   /// Returns the answer. `files_`: stored maps at that time. `behind`: a job of the writer after the map's.
-  icd::Checked<void> take(
+  icd::Checked<void> accept(
       icd::MapUpdate update, std::function<void()> behind = [] {},
       const queues::Upload& upload = {.bytes = 10}) {
     std::optional<icd::Checked<void>> said;
@@ -72,7 +72,7 @@ class MapsTest : public testing::Test, protected MapsParts {
 };
 
 TEST_F(MapsTest, AreAnsweredOnceTheirFileExists) {
-  EXPECT_EQ(status(take(grid("r1", 10, 500))), icd::Status::Ok);
+  EXPECT_EQ(status(accept(grid("r1", 10, 500))), icd::Status::Ok);
   EXPECT_EQ(files_, 1u);
 }
 
@@ -93,9 +93,9 @@ TEST_F(MapsTest, AreNotAnsweredWhileTheWriterIsBusy) {
 
 TEST_F(MapsTest, AreDeletedOnceTheNewerOneIsStored) {
   std::promise<void> let_go;
-  EXPECT_EQ(status(take(grid("r1", 10, 500))), icd::Status::Ok);
+  EXPECT_EQ(status(accept(grid("r1", 10, 500))), icd::Status::Ok);
   const auto waits = [until = let_go.get_future().share()] { until.wait(); };
-  EXPECT_EQ(status(take(grid("r1", 20, 700), waits)), icd::Status::Ok);
+  EXPECT_EQ(status(accept(grid("r1", 20, 700), waits)), icd::Status::Ok);
   EXPECT_EQ(files_, 2u) << "the older file is deleted later";
   let_go.set_value();
   EXPECT_TRUE(has_files(1));
@@ -109,8 +109,8 @@ icd::MapUpdate window(double x) {
 }
 
 TEST_F(MapsTest, KeepWhatTheyReplacedOverARestart) {
-  EXPECT_EQ(status(take(window(0))), icd::Status::Ok);
-  EXPECT_EQ(status(take(window(0.1))), icd::Status::Ok);
+  EXPECT_EQ(status(accept(window(0))), icd::Status::Ok);
+  EXPECT_EQ(status(accept(window(0.1))), icd::Status::Ok);
   ASSERT_TRUE(has_files(1));
   Maps next = maps_with(std::nullopt);
   next.restore(spool::Spool(folder_.path()).read());
@@ -127,13 +127,13 @@ TEST_F(MapsTest, KeepWhatTheyReplacedOverARestart) {
 TEST_F(MapsTest, KeepTheAgeOfWhatTheyReplacedOverARestart) {
   icd::MapUpdate newest = window(0);
   newest.header().stamp = loop_.stamp_now();
-  EXPECT_EQ(status(take(std::move(newest))), icd::Status::Ok);
+  EXPECT_EQ(status(accept(std::move(newest))), icd::Status::Ok);
   journal::Heard heard{.robot = "r1"};
   heard.behind[static_cast<std::size_t>(TrafficKind::Grid)] = loop_.stamp_now() - 30;
-  journal::Carried carried;
+  journal::HandoverState carried;
   EXPECT_TRUE(carried.apply(journal::RecordKind::Heard, store::bytes_of(heard)));
   Maps next = maps_with(std::nullopt);
-  next.carry_on(carried, /*ran_before=*/true);
+  next.restore(carried, /*ran_before=*/true);
   next.restore(spool::Spool(folder_.path()).read());
   const auto since = next.oldest_acceptance({TrafficKind::Grid, "r1"});
   ASSERT_TRUE(since);
@@ -157,12 +157,12 @@ class OvertakenGrid : public MapsTest {
  protected:
   /// The upload of the older one begins first and ends last.
   icd::Status take_newer(icd::MapUpdate map) {
-    return status(take(std::move(map), [] {}, {.bytes = 10, .began = 2, .ended = 3, .overlaps = 1}));
+    return status(accept(std::move(map), [] {}, {.bytes = 10, .began = 2, .ended = 3, .overlaps = 1}));
   }
   icd::Status take_older(icd::MapUpdate map) {
-    return status(take(std::move(map), [] {}, {.bytes = 10, .began = 1, .ended = 4}));
+    return status(accept(std::move(map), [] {}, {.bytes = 10, .began = 1, .ended = 4}));
   }
-  spool::Spool::Kept stored() {
+  spool::Spool::KeptMaps stored() {
     EXPECT_TRUE(loop::turn_until_idle(loop_, writer_));
     return spool::Spool(folder_.path()).read();
   }
@@ -206,9 +206,9 @@ TEST_F(OvertakenGrid, IsTheNewestIfItHasTheNewerStamp) {
 /// A third one, posted after the newest one, has an older stamp, because its client's clock was set back.
 TEST_F(OvertakenGrid, IsNewerThanAThirdOneOnlyWithTheCellsThatAreQueued) {
   EXPECT_EQ(take_newer(columns(0, 10)), icd::Status::Ok);
-  EXPECT_EQ(status(take(columns(-1, 9), [] {}, {.bytes = 10, .began = 1, .ended = 5, .overlaps = 4})),
+  EXPECT_EQ(status(accept(columns(-1, 9), [] {}, {.bytes = 10, .began = 1, .ended = 5, .overlaps = 4})),
             icd::Status::Ok);
-  EXPECT_EQ(status(take(columns(0, 8), [] {}, {.bytes = 10, .began = 4, .ended = 6})), icd::Status::Ok);
+  EXPECT_EQ(status(accept(columns(0, 8), [] {}, {.bytes = 10, .began = 4, .ended = 6})), icd::Status::Ok);
   const auto kept = stored();
   ASSERT_EQ(kept.size(), 2u) << "the third one replaced the first one";
   EXPECT_EQ(std::get<icd::OccupancyGrid>(kept[0].map.msg).width, 4u);
@@ -238,11 +238,11 @@ TEST_F(OvertakenGrid, IsRejectedIfItsDataIsDamaged) {
 }
 
 TEST_F(MapsTest, AreNotDeletedIfTheBoundsOfTheNewerOneCannotBeStored) {
-  EXPECT_EQ(status(take(window(0))), icd::Status::Ok);
+  EXPECT_EQ(status(accept(window(0))), icd::Status::Ok);
   const auto bounds_file = host::numbered_name("map-", MapStore::kFirstNumber + 2, ".bounds");
   fs::create_directory(folder_ / bounds_file);
   std::ofstream(folder_ / (bounds_file + "/in_the_way")) << "x";
-  EXPECT_EQ(status(take(window(0.1))), icd::Status::Ok);
+  EXPECT_EQ(status(accept(window(0.1))), icd::Status::Ok);
   EXPECT_TRUE(loop::turn_until_idle(loop_, writer_));
   EXPECT_EQ(files(), 2u) << "a process that starts now finds both";
   EXPECT_EQ(maps_.waiting({TrafficKind::Grid, "r1"}), 1u);
@@ -256,7 +256,7 @@ TEST_F(MapsTest, KeepWhatARetriedGridReplaced) {
   maps_.resend(
       window(0.1), [&](bool well) { return kept = well; }, icd::joint_bounds(bounds(0.1), bounds(0)));
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return kept; }));
-  EXPECT_EQ(status(take(window(0.2))), icd::Status::Ok);
+  EXPECT_EQ(status(accept(window(0.2))), icd::Status::Ok);
   EXPECT_EQ(maps_.waiting({TrafficKind::Grid, "r1"}), 2u);
   const auto stored = spool::Spool(folder_.path()).read();
   ASSERT_EQ(stored.size(), 2u);
@@ -264,7 +264,7 @@ TEST_F(MapsTest, KeepWhatARetriedGridReplaced) {
 }
 
 TEST_F(MapsTest, StandForARetriedGridOverARestart) {
-  EXPECT_EQ(status(take(window(0))), icd::Status::Ok);
+  EXPECT_EQ(status(accept(window(0))), icd::Status::Ok);
   std::optional<bool> kept;
   maps_.resend(window(0.1), [&](bool well) {
     kept = well;
@@ -281,7 +281,7 @@ TEST_F(MapsTest, StandForARetriedGridOverARestart) {
 /// A process may be killed at any byte.
 TEST_F(MapsTest, AssumeSentGridsAfterAnyTruncation) {
   journal_.begin({.boot = "boot", .at = {}, .stamp = 1});
-  maps_.carry_on({}, /*ran_before=*/true);
+  maps_.restore({}, /*ran_before=*/true);
   for (const auto& entry : fs::directory_iterator(journal_folder_.path())) {
     for (std::uintmax_t size = 0; size <= entry.file_size(); ++size) {
       const host::Folder cut;
@@ -297,7 +297,7 @@ TEST_F(MapsTest, AssumeSentGridsAfterAnyTruncation) {
 
 /// After a restart, the highest number is the newest map.
 TEST_F(MapsTest, ReplaceARetriedGridByANewerCoveringOne) {
-  EXPECT_EQ(status(take(grid("r1", 20, 700))), icd::Status::Ok);
+  EXPECT_EQ(status(accept(grid("r1", 20, 700))), icd::Status::Ok);
   std::optional<bool> kept;
   maps_.resend(grid("r1", 10, 500), [&](bool is_kept) {
     kept = is_kept;
@@ -309,7 +309,7 @@ TEST_F(MapsTest, ReplaceARetriedGridByANewerCoveringOne) {
 }
 
 TEST_F(MapsTest, KeepARetriedGridOldestAfterARestart) {
-  EXPECT_EQ(status(take(grid("r1", 10, 500))), icd::Status::Ok);
+  EXPECT_EQ(status(accept(grid("r1", 10, 500))), icd::Status::Ok);
   bool kept = false;
   maps_.resend(grid("r1", 20, 700), [&](bool well) { return kept = well; });
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return kept; }));
@@ -352,11 +352,11 @@ TEST_F(MapsTest, DropARetriedGridIfItWasReplacedMeanwhile) {
 }
 
 TEST_F(MapsTest, ReplaceQueuedMapsInAFullQueue) {
-  EXPECT_EQ(status(take(grid("r1", 10, 50'000))), icd::Status::Ok);
-  EXPECT_EQ(status(take(grid("r2", 10, 40'000))), icd::Status::Ok);
-  EXPECT_EQ(status(take(grid("r3", 10, 20'000))), icd::Status::TooManyRequests);
+  EXPECT_EQ(status(accept(grid("r1", 10, 50'000))), icd::Status::Ok);
+  EXPECT_EQ(status(accept(grid("r2", 10, 40'000))), icd::Status::Ok);
+  EXPECT_EQ(status(accept(grid("r3", 10, 20'000))), icd::Status::TooManyRequests);
   EXPECT_EQ(counts_.rows().at({TrafficKind::Grid, "r3"}).no_room, 1u);
-  EXPECT_EQ(status(take(grid("r1", 20, 60'000))), icd::Status::Ok);
+  EXPECT_EQ(status(accept(grid("r1", 20, 60'000))), icd::Status::Ok);
   EXPECT_TRUE(has_files(2));
 }
 
@@ -365,25 +365,25 @@ TEST_F(MapsTest, AreCountedIfTheyHaveNoValidPoint) {
   maps_.on_settings_changed();
   const Traffic traffic{TrafficKind::Cloud, "r1"};
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  ASSERT_TRUE(take(cloud_along_x("r1", {1, 2})));
-  EXPECT_TRUE(take(cloud_along_x("r1", {nan, nan, nan})));
+  ASSERT_TRUE(accept(cloud_along_x("r1", {1, 2})));
+  EXPECT_TRUE(accept(cloud_along_x("r1", {nan, nan, nan})));
   EXPECT_EQ(maps_.waiting(traffic), 1u);
   EXPECT_TRUE(has_files(1));
   EXPECT_EQ(counts_.rows().at(traffic).accepted, 2u);
   EXPECT_EQ(counts_.rows().at(traffic).replaced, 0u);
   EXPECT_EQ(counts_.rows().at(traffic).no_valid_point, 1u);
-  ASSERT_TRUE(take(cloud_along_x("r2", {})));
+  ASSERT_TRUE(accept(cloud_along_x("r2", {})));
   EXPECT_EQ(maps_.waiting({TrafficKind::Cloud, "r2"}), 1u) << "posted without points";
 }
 
 TEST_F(MapsTest, WaitSinceTheOldestOfTheirRobotAndKind) {
   const Traffic traffic{TrafficKind::Grid, "r1"};
   EXPECT_FALSE(maps_.oldest_acceptance(traffic)) << "nothing is queued";
-  ASSERT_TRUE(take(grid("r1", 10, 500)));
+  ASSERT_TRUE(accept(grid("r1", 10, 500)));
   const auto since = maps_.oldest_acceptance(traffic);
   ASSERT_TRUE(since);
-  ASSERT_TRUE(take(grid("r2", 10, 500)));
-  ASSERT_TRUE(take(grid("r1", 20, 500)));
+  ASSERT_TRUE(accept(grid("r2", 10, 500)));
+  ASSERT_TRUE(accept(grid("r1", 20, 500)));
   EXPECT_EQ(maps_.oldest_acceptance(traffic), since) << "the oldest counts";
   EXPECT_GT(*maps_.oldest_acceptance({TrafficKind::Grid, "r2"}), *since);
   EXPECT_FALSE(maps_.oldest_acceptance({TrafficKind::Cloud, "r1"}));
@@ -407,9 +407,9 @@ TEST_F(MapsTest, AreLimitedInNumberUnlessTheyMerge) {
   }
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return maps_.has_stored_all(); }, std::chrono::seconds{60}));
   EXPECT_EQ(taken, Maps::kMostMaps);
-  EXPECT_EQ(status(take(cloud_of(true))), icd::Status::TooManyRequests);
-  EXPECT_EQ(status(take(cloud_of(false))), icd::Status::Ok) << "merged into the last queued one";
-  EXPECT_EQ(status(take(cloud_of(true))), icd::Status::TooManyRequests);
+  EXPECT_EQ(status(accept(cloud_of(true))), icd::Status::TooManyRequests);
+  EXPECT_EQ(status(accept(cloud_of(false))), icd::Status::Ok) << "merged into the last queued one";
+  EXPECT_EQ(status(accept(cloud_of(true))), icd::Status::TooManyRequests);
 }
 
 TEST_F(MapsTest, AreRejectedWithAReasonIfAWriteFails) {
@@ -418,12 +418,12 @@ TEST_F(MapsTest, AreRejectedWithAReasonIfAWriteFails) {
   {
     std::ofstream(path) << "in the way";
   }
-  const auto said = take(grid("r1", 10, 500));
+  const auto said = accept(grid("r1", 10, 500));
   ASSERT_FALSE(said);
   EXPECT_EQ(said.error().status, icd::Status::ServiceUnavailable);
   EXPECT_EQ(maps_.trouble(), said.error().sentence);
   fs::remove(path);
-  EXPECT_EQ(status(take(grid("r1", 10, 500))), icd::Status::Ok) << "in a new directory";
+  EXPECT_EQ(status(accept(grid("r1", 10, 500))), icd::Status::Ok) << "in a new directory";
   EXPECT_EQ(maps_.trouble(), "");
 }
 

@@ -35,7 +35,7 @@ class MarkerArrivalsTest : public testing::Test {
  protected:
   MarkerArrivalsTest() { journal_.begin({.boot = "b", .at = loop_.now(), .stamp = loop_.stamp_now()}); }
 
-  void take(icd::MarkersUpdate update) {
+  void accept(icd::MarkersUpdate update) {
     arrivals_.accept(std::move(update), {.bytes = 10}, [this](const icd::Checked<void>& taken) {
       said_.push_back(taken ? icd::Status::Ok : taken.error().status);
     });
@@ -56,7 +56,7 @@ class MarkerArrivalsTest : public testing::Test {
 };
 
 TEST_F(MarkerArrivalsTest, AreQueuedAtOnceIfTheyAreFew) {
-  take({{change(1, "a")}});
+  accept({{change(1, "a")}});
   EXPECT_THAT(said_, ElementsAre(icd::Status::Ok));
   EXPECT_TRUE(arrivals_.empty());
   EXPECT_EQ(queue_.pending(), left());
@@ -84,14 +84,14 @@ TEST_F(MarkerArrivalsTest, AreCountedIfTheyAreInvisible) {  // ICD 6.6
   update.markers[1].color.a = 0, update.markers[1].colors = {{1, 0, 0, 1}};
   update.markers[2].color.a = 0, update.markers[2].mesh_use_embedded_materials = true;
   update.markers[3].color.a = 0, update.markers[3].action = icd::MarkerAction::Delete;
-  take(std::move(update));
+  accept(std::move(update));
   ASSERT_TRUE(turn_until([this] { return !said_.empty(); }));
   EXPECT_THAT(said_, ElementsAre(icd::Status::Ok)) << "accepted";
   EXPECT_EQ(counts_.rows().at({TrafficKind::Markers, ""}).invisible, 2u);
 }
 
 TEST_F(MarkerArrivalsTest, AreAnsweredOnceAllAreStoredAndQueued) {
-  take(many("many"));
+  accept(many("many"));
   EXPECT_THAT(said_, ElementsAre());
   ASSERT_TRUE(turn_until([this] { return left().size() == 2500; }));
   EXPECT_TRUE(arrivals_.is_in_part());
@@ -104,9 +104,9 @@ TEST_F(MarkerArrivalsTest, AreAnsweredOnceAllAreStoredAndQueued) {
 
 /// The journal has the same order.
 TEST_F(MarkerArrivalsTest, KeepTheOrderOfAcceptance) {
-  take(many("older"));
-  take({{change(2499, "newer")}});
-  take({{change(7, "", icd::MarkerAction::Delete)}});
+  accept(many("older"));
+  accept({{change(2499, "newer")}});
+  accept({{change(7, "", icd::MarkerAction::Delete)}});
   ASSERT_TRUE(turn_until([this] { return said_.size() == 3; }));
   EXPECT_EQ(queue_.pending(), left());
   EXPECT_EQ(queue_.pending().at(2499).text, "newer");
@@ -114,8 +114,8 @@ TEST_F(MarkerArrivalsTest, KeepTheOrderOfAcceptance) {
 }
 
 TEST_F(MarkerArrivalsTest, EndWithADeleteAll) {
-  take(many("older"));
-  take({{change(0, "wipe", icd::MarkerAction::DeleteAll), change(3, "newer")}});
+  accept(many("older"));
+  accept({{change(0, "wipe", icd::MarkerAction::DeleteAll), change(3, "newer")}});
   ASSERT_TRUE(turn_until([this] { return said_.size() == 2; }));
   EXPECT_EQ(queue_.count(), 2u);
   EXPECT_EQ(queue_.pending(), left());
@@ -126,7 +126,7 @@ TEST_F(MarkerArrivalsTest, AreStoredUpToTheLimitOfAMessage) {
   icd::MarkersUpdate most;
   for (std::int32_t id = 0; id < 100'000; ++id)
     most.markers.push_back(change(id, "", icd::MarkerAction::Delete));
-  take(most);
+  accept(most);
   ASSERT_TRUE(turn_until([this] { return !said_.empty(); }));
   EXPECT_THAT(said_, ElementsAre(icd::Status::Ok));
   EXPECT_EQ(left(), most.markers);
@@ -134,10 +134,10 @@ TEST_F(MarkerArrivalsTest, AreStoredUpToTheLimitOfAMessage) {
 
 TEST_F(MarkerArrivalsTest, AreRejectedAsAWholeByAFullQueue) {
   queue_.set_bounds({.bytes = 3000 * icd::bytes_of(change(0, "12345"))});
-  take(many("12345"));
+  accept(many("12345"));
   icd::MarkersUpdate others = many("12345");
   for (icd::Marker& marker : others.markers) marker.id += 10'000;
-  take(std::move(others));
+  accept(std::move(others));
   ASSERT_TRUE(turn_until([this] { return said_.size() == 2; }));
   EXPECT_THAT(said_, ElementsAre(icd::Status::Ok, icd::Status::TooManyRequests));
   EXPECT_EQ(queue_.count(), 2500u);

@@ -16,7 +16,7 @@ class PipelinedMap : public MapsToManualEndpoint {
   void deliver_several() {
     for (int i = 0; i < queues::Pipelining::kWell; ++i) {
       post_.answer("200 OK");
-      take(grid_of("first", 10));
+      accept(grid_of("first", 10));
       ASSERT_TRUE(are_delivered());
     }
     before_ = post_.received().size();
@@ -35,10 +35,10 @@ class PipelinedMap : public MapsToManualEndpoint {
   /// True if bytes of the next map leave before the first map is answered. If a busy machine delays the
   /// answer, Adit sends nothing ahead and the caller tries again.
   bool is_sent_ahead(const char* robot, const icd::MapUpdate& next, std::uint32_t width = 10) {
-    take(grid_of(robot, width));
+    accept(grid_of(robot, width));
     if (!loop::turn_until(loop_, [&] { return post_.received().size() > before_; })) return false;
     const std::uint64_t sent = maps_->channel().bytes_sent();
-    take(next);
+    accept(next);
     const loop::Instant late = loop_.now() + queues::Pipelining::kLate;
     return loop::turn_until(loop_,
                             [&] { return maps_->channel().bytes_sent() > sent || loop_.now() > late; }) &&
@@ -119,7 +119,7 @@ TEST_F(PipelinedMap, IsSentToANewEndpointWithTheFirst) {
   send_one_ahead();
   ManualEndpoint other;
   settings_.command_post.mapping = other.address();
-  maps_->endpoint_changed(icd::BearerToken::parse("a-token"));
+  maps_->on_endpoint_changed(icd::BearerToken::parse("a-token"));
   for (int i = 0; i < 2; ++i) other.answer("200 OK");
   EXPECT_TRUE(are_delivered());
   EXPECT_EQ(other.received(), (std::vector<std::string>{"first", "second"}));

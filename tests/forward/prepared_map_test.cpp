@@ -12,9 +12,9 @@ class PreparedMap : public MapsToManualEndpoint {
  protected:
   /// The first map is in flight, the second is packed.
   void send_one_and_pack_one() {
-    take(grid_of("first", 10));
+    accept(grid_of("first", 10));
     ASSERT_TRUE(receives({"first"}));
-    take(grid_of("second", 10));
+    accept(grid_of("second", 10));
     ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_->queued_bytes() == 0 && !maps_->packing(); }));
   }
 };
@@ -39,7 +39,7 @@ TEST_F(PreparedMap, ReturnsToTheQueueWithTheFirst) {
 }
 
 TEST_F(PreparedMap, ReturnsToTheQueueIfTheRunChangesWhileItIsPacked) {
-  take(grid_of("first", 10));
+  accept(grid_of("first", 10));
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_->packing(); }));
   maps_->change_run(dispatch::NextMap::MayBeTheSame);
   EXPECT_GT(maps_->queued_bytes(), 0u);
@@ -58,9 +58,9 @@ TEST_F(PreparedMap, IsSentIfTheFirstIsRejected) {
 
 /// Otherwise older cells would follow newer ones.
 TEST_F(PreparedMap, ReplacesAFailedGridThatItCovers) {
-  take(grid_of("first", 10));
+  accept(grid_of("first", 10));
   ASSERT_TRUE(receives({"first"}));
-  take(grid_of("first", 20));
+  accept(grid_of("first", 20));
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_->queued_bytes() == 0 && !maps_->packing(); }));
   post_.answer("500 Oops");
   ASSERT_TRUE(receives({"first", "first"}));
@@ -70,9 +70,9 @@ TEST_F(PreparedMap, ReplacesAFailedGridThatItCovers) {
 }
 
 TEST_F(PreparedMap, ReplacesAnOlderGridSentByTheOperator) {
-  take(grid_of("first", 10));
+  accept(grid_of("first", 10));
   ASSERT_TRUE(receives({"first"}));
-  take(grid_of("second", 20));
+  accept(grid_of("second", 20));
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_->queued_bytes() == 0; }));
   std::optional<bool> kept;
   maps_->resend(grid_of("second", 10), [&](bool well) {

@@ -51,7 +51,7 @@ class RejectedStoreTest : public testing::Test {
            std::size_t bytes = 100) {
     rejected_->add(std::move(message), status, why, bytes,
                    {.on_stored = [this](bool kept) { ++(kept ? told_.kept : told_.not_kept); },
-                    .let_go = [this] { ++told_.let_go; }});
+                    .release = [this] { ++told_.let_go; }});
   }
 
   /// Blocks the writer until let_go().

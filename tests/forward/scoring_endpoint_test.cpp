@@ -20,7 +20,7 @@ class Client final : public intake::Responder {
   explicit Client(std::vector<int>& told) : told_(told) {}
   void answer(intake::Answer answer) override { told_.push_back(static_cast<int>(answer.status)); }
   std::shared_ptr<intake::Stream> stream(std::string_view) override { return nullptr; }
-  bool client_gone() const override { return false; }
+  bool is_client_gone() const override { return false; }
 
  private:
   std::vector<int>& told_;
@@ -91,7 +91,7 @@ class ScoringEndpoint : public testing::Test, protected ScoringParts {
   }
   void move() {
     settings_.command_post.scoring = there_.address();
-    scoring_->endpoint_changed(token_);
+    scoring_->on_endpoint_changed(token_);
     scoring_->on_settings_changed();
   }
   const dispatch::Report& report(std::int64_t number) const { return scoring_->reports().book().at(number); }
@@ -135,7 +135,7 @@ TEST_F(ScoringEndpoint, KeepsItsQueuedReportsAndTheirClients) {
   EXPECT_THAT(second_, testing::IsEmpty());
   EXPECT_EQ(there_.recorded, 0) << "it belongs to the run of the old endpoint";
   settings_.command_post.scoring = here_.address();
-  scoring_->endpoint_changed(token_);
+  scoring_->on_endpoint_changed(token_);
   here_.let.release();
   ASSERT_TRUE(eventually([this] { return !second_.empty(); }));
   EXPECT_THAT(second_, ElementsAre(201));
@@ -156,11 +156,11 @@ TEST_F(ScoringEndpoint, GetsReportsPostedAfterItsChange) {
 
 TEST_F(ScoringEndpoint, KeepsItsRunWithAnotherToken) {
   const auto run = scoring_->reports().run().number;
-  scoring_->endpoint_changed(std::nullopt);
+  scoring_->on_endpoint_changed(std::nullopt);
   EXPECT_FALSE(scoring_->channel().has_token());
   post(1, first_);
   EXPECT_THAT(first_, testing::IsEmpty()) << "queued";
-  scoring_->endpoint_changed(token_);
+  scoring_->on_endpoint_changed(token_);
   here_.let.release();
   ASSERT_TRUE(eventually([this] { return !first_.empty(); }));
   EXPECT_THAT(first_, ElementsAre(201));

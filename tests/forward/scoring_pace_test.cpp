@@ -14,14 +14,14 @@ class ScoringPaceTest : public testing::Test, protected FlowParts {
     return pace::Instant{} +
            std::chrono::duration_cast<pace::Duration>(std::chrono::duration<double>(1000 + seconds));
   }
-  static uplink::Sent left(double seconds) { return {.first = at(seconds), .last = at(seconds)}; }
+  static uplink::SendTimes left(double seconds) { return {.first = at(seconds), .last = at(seconds)}; }
   void ask_status(double seconds) {
-    pace_.status_sent(at(seconds));
-    pace_.status_taken(left(seconds), at(seconds));
+    pace_.on_status_sent(at(seconds));
+    pace_.on_status_accepted(left(seconds), at(seconds));
   }
   void refuse_report(double seconds, std::optional<std::chrono::seconds> retry_after = {}) {
-    pace_.report_sent(at(seconds));
-    pace_.report_throttled(left(seconds), retry_after, at(seconds));
+    pace_.on_report_sent(at(seconds));
+    pace_.on_report_throttled(left(seconds), retry_after, at(seconds));
   }
 
   void SetUp() override { journal_.begin({.boot = "b", .at = loop_.now(), .stamp = loop_.stamp_now()}); }
@@ -32,8 +32,8 @@ class ScoringPaceTest : public testing::Test, protected FlowParts {
 TEST_F(ScoringPaceTest, DelaysAStatusAfterAReport) {
   ask_status(0);
   EXPECT_LE(pace_.report_ready(), at(0));
-  pace_.report_sent(at(0.5));
-  pace_.report_taken(left(0.5), at(0.6));
+  pace_.on_report_sent(at(0.5));
+  pace_.on_report_accepted(left(0.5), at(0.6));
   EXPECT_GE(pace_.status_ready(false), at(1.5));
   EXPECT_LT(pace_.status_ready(true), at(1.1)) << "a status that decides a doubt";
 }
@@ -47,7 +47,7 @@ TEST_F(ScoringPaceTest, OneLimitForBothIsDetected) {
   ask_status(1.2);
   EXPECT_GE(pace_.report_ready(), at(2.2));
   EXPECT_GE(pace_.status_ready(true), at(2.2));
-  pace_.endpoint_turned();
+  pace_.on_new_command_post();
   EXPECT_FALSE(pace_.has_one_limit());
   EXPECT_GE(pace_.status_ready(true), at(2.2)) << "after the last status";
 }
@@ -57,10 +57,10 @@ TEST_F(ScoringPaceTest, TheFirst429OfOneLimitTeachesNoSlowerPace) {
   for (const double begin : {0.0, 10.0, 20.0, 30.0, 40.0}) {
     ask_status(begin);
     refuse_report(begin + 0.1);
-    pace_.report_sent(at(begin + 1.2));
-    pace_.report_taken(left(begin + 1.2), at(begin + 1.2));
+    pace_.on_report_sent(at(begin + 1.2));
+    pace_.on_report_accepted(left(begin + 1.2), at(begin + 1.2));
     EXPECT_EQ(pace_.spacing(), allowed) << begin;
-    pace_.endpoint_turned();
+    pace_.on_new_command_post();
   }
 }
 
@@ -71,20 +71,20 @@ TEST_F(ScoringPaceTest, TheFirst429OfOneLimitMayAskForAPause) {
 }
 
 TEST_F(ScoringPaceTest, APauseHoldsForBothAndForTheNextEndpoint) {
-  pace_.report_sent(at(0));
-  pace_.report_taken(left(0), at(0.1));
-  pace_.status_sent(at(0.5));  // a status that decides a doubt
-  pace_.status_throttled(left(0.5), 7s, at(0.6));
+  pace_.on_report_sent(at(0));
+  pace_.on_report_accepted(left(0), at(0.1));
+  pace_.on_status_sent(at(0.5));  // a status that decides a doubt
+  pace_.on_status_throttled(left(0.5), 7s, at(0.6));
   EXPECT_TRUE(pace_.has_one_limit());
   EXPECT_GE(pace_.report_ready(), at(7.6));
   EXPECT_GE(pace_.status_ready(true), at(7.6));
-  pace_.endpoint_turned();
+  pace_.on_new_command_post();
   EXPECT_GE(pace_.status_ready(true), at(7.6));
 }
 
 TEST_F(ScoringPaceTest, AStormOfBothKindsIsNotOneLimit) {
-  pace_.status_sent(at(0));
-  pace_.status_throttled(left(0), {}, at(0.1));
+  pace_.on_status_sent(at(0));
+  pace_.on_status_throttled(left(0), {}, at(0.1));
   refuse_report(0.2);
   EXPECT_FALSE(pace_.has_one_limit());
 }

@@ -32,7 +32,7 @@ class Asker final : public intake::Responder {
  public:
   void answer(intake::Answer answer) override { heard = std::move(answer); }
   std::shared_ptr<intake::Stream> stream(std::string_view) override { return nullptr; }
-  bool client_gone() const override { return false; }
+  bool is_client_gone() const override { return false; }
   std::optional<intake::Answer> heard;
 };
 
@@ -117,7 +117,7 @@ TEST_F(ScoringTest, CancelsAnUnansweredStatusForAReport) {
   const Ends ends{*this};
   lead_to({answers_once, records});
   ASSERT_TRUE(eventually([&] { return scoring_->run().has_value(); }));
-  scoring_->link_is_back();  // asks again
+  scoring_->on_link_up();  // asks again
   ASSERT_TRUE(eventually([&] { return asked_again.load(); }));
   const auto client = report(1);
   ASSERT_TRUE(eventually([&] { return client->heard.has_value(); }));
@@ -192,10 +192,10 @@ TEST_F(ScoringTest, ObeysTheRetryAfterOfA503ForAStatusThatNoReportNeeds) {
   const Ends ends{*this};
   lead_to({server.script()});
   ASSERT_TRUE(eventually([&] { return scoring_->run().has_value(); }));
-  scoring_->link_is_back();  // asks again
+  scoring_->on_link_up();  // asks again
   ASSERT_TRUE(eventually([&] { return scoring_->channel().last().status() == 503; }));
   const std::size_t before = server.answered();
-  scoring_->link_is_back();
+  scoring_->on_link_up();
   loop::turn_for(loop_, 200ms);
   EXPECT_EQ(server.answered(), before);
 }

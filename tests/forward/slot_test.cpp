@@ -11,7 +11,7 @@ using queues::Precision;
 constexpr loop::Instant kBegin{std::chrono::seconds(100)};
 constexpr std::size_t kMegabyte = 1'000'000;
 
-uplink::Sent sent_in(milliseconds took) {
+uplink::SendTimes sent_in(milliseconds took) {
   return {.first = kBegin, .last = kBegin + took};
 }
 
@@ -57,10 +57,10 @@ TEST(Slot, FollowsTheMeasuredLink) {
 
 TEST(Slot, HoldsLessIfTheLinkDeliversLess) {
   Slot slot(10 * kMegabyte);
-  slot.link_delivers(0);  // unknown
+  slot.set_link_rate(0);  // unknown
   EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
-  slot.link_delivers(6 * kMegabyte);
-  slot.link_delivers(9 * kMegabyte);
+  slot.set_link_rate(6 * kMegabyte);
+  slot.set_link_rate(9 * kMegabyte);
   EXPECT_EQ(exact_in(slot, 1), 6 * kMegabyte) << "until a map leaves faster";
   slot.on_sent(6 * kMegabyte, sent_in(milliseconds(600)), {});
   EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
@@ -75,17 +75,17 @@ TEST(Slot, IgnoresTimeBeforeTheSlot) {
 TEST(Slot, LeadsByTheLongestRecentPacking) {
   Slot slot(10 * kMegabyte);
   EXPECT_EQ(slot.lead(), loop::Duration(0));
-  slot.packing_took(milliseconds(600));
-  slot.packing_took(milliseconds(300));
+  slot.on_packing_done(milliseconds(600));
+  slot.on_packing_done(milliseconds(300));
   EXPECT_GT(slot.lead(), milliseconds(500));
-  for (int i = 0; i < 50; ++i) slot.packing_took(milliseconds(300));
+  for (int i = 0; i < 50; ++i) slot.on_packing_done(milliseconds(300));
   EXPECT_LT(slot.lead(), milliseconds(310));
   EXPECT_GE(slot.lead(), milliseconds(300));
 }
 
 TEST(Slot, LimitsItsLead) {
   Slot slot(10 * kMegabyte);
-  slot.packing_took(std::chrono::seconds(60));
+  slot.on_packing_done(std::chrono::seconds(60));
   EXPECT_EQ(slot.lead(), loop::Duration(Slot::kLongestLead));
 }
 
@@ -100,7 +100,7 @@ TEST(Slot, DetectsThatASlowLinkIsFastAgain) {
 
 TEST(Slot, HasTheFiguresForTheEffort) {
   Slot slot(10 * kMegabyte);
-  const auto hurry = [&slot] { return slot.hurry(std::chrono::seconds(2)); };
+  const auto hurry = [&slot] { return slot.effort_input(std::chrono::seconds(2)); };
   EXPECT_EQ(hurry().bytes_per_second, 10 * kMegabyte);
   slot.on_sent(2 * kMegabyte, sent_in(std::chrono::seconds(1)), kBegin);
   EXPECT_EQ(hurry().bytes_per_second, 2 * kMegabyte);
@@ -109,26 +109,26 @@ TEST(Slot, HasTheFiguresForTheEffort) {
 
 TEST(Slot, LearnsHowSlowTheBoxIs) {
   Slot slot(10 * kMegabyte);
-  const auto slowness = [&slot] { return slot.hurry(std::chrono::seconds(1)).slowness; };
+  const auto slowness = [&slot] { return slot.effort_input(std::chrono::seconds(1)).slowness; };
   EXPECT_EQ(slowness(), 1);
-  for (const double little : {0.0, 0.0004}) slot.worker_took(std::chrono::seconds(1), little);
+  for (const double little : {0.0, 0.0004}) slot.on_work_done(std::chrono::seconds(1), little);
   EXPECT_EQ(slowness(), 1) << "too short to measure";
-  for (int i = 0; i < 20; ++i) slot.worker_took(milliseconds(60), 0.015);
+  for (int i = 0; i < 20; ++i) slot.on_work_done(milliseconds(60), 0.015);
   EXPECT_NEAR(slowness(), 4, 0.01);
-  for (int i = 0; i < 20; ++i) slot.worker_took(milliseconds(1), 0.1);
+  for (int i = 0; i < 20; ++i) slot.on_work_done(milliseconds(1), 0.1);
   EXPECT_EQ(slowness(), 0.5) << "the lower limit";
 }
 
 TEST(Slot, ForgetsAStallOfTheWorker) {
   Slot slot(10 * kMegabyte);
-  const auto slowness = [&slot] { return slot.hurry(std::chrono::seconds(1)).slowness; };
-  slot.worker_took(std::chrono::seconds(10), 0.1);
+  const auto slowness = [&slot] { return slot.effort_input(std::chrono::seconds(1)).slowness; };
+  slot.on_work_done(std::chrono::seconds(10), 0.1);
   const double stalled = slowness();
   EXPECT_GT(stalled, 50);
-  slot.worker_took(milliseconds(1), 0);
+  slot.on_work_done(milliseconds(1), 0);
   EXPECT_LT(slowness(), stalled);
   EXPECT_GT(slowness(), 0.9 * stalled) << "one sample weighs little";
-  for (int i = 0; i < 500; ++i) slot.worker_took(milliseconds(1), 0);
+  for (int i = 0; i < 500; ++i) slot.on_work_done(milliseconds(1), 0);
   EXPECT_NEAR(slowness(), 1, 0.01);
 }
 

@@ -15,15 +15,15 @@ namespace fs = std::filesystem;
 
 class StampFloorTest : public testing::Test {
  protected:
-  static constexpr StampFloor::Kept kWritten{.floor = 1.7e9,
-                                             .wall = 1.6e9,
-                                             .least = 1.5e9,
-                                             .ledger = {.reports = 7, .log = 3},
-                                             .lead = 5,
-                                             .overruled = 1.4e9};
+  static constexpr StampFloor::StoredFloor kWritten{.floor = 1.7e9,
+                                                    .wall = 1.6e9,
+                                                    .least = 1.5e9,
+                                                    .ledger = {.reports = 7, .log = 3},
+                                                    .lead = 5,
+                                                    .overruled = 1.4e9};
   static constexpr std::size_t kCopy = 112;  // bytes of a copy
 
-  StampFloor::Kept read() const { return StampFloor(folder_.string()).read().value(); }
+  StampFloor::StoredFloor read() const { return StampFloor(folder_.string()).read().value(); }
   std::string bytes() const { return host::read_file(folder_ / StampFloor::kFile).value(); }
   void put(std::string_view file) const {
     std::ofstream(folder_ / StampFloor::kFile, std::ios::binary) << file;
@@ -127,7 +127,7 @@ TEST_F(StampFloorTest, IsZeroIfItsFileIsInvalid) {
   for (const char* text : {"", "soon", "1700000000.0\n1600000000.0\n0.0\n7\n3\n"}) {
     const std::uint64_t before = host::last_record_number();
     put(text);
-    EXPECT_EQ(read(), StampFloor::Kept{.is_damaged = true}) << text;
+    EXPECT_EQ(read(), StampFloor::StoredFloor{.is_damaged = true}) << text;
     EXPECT_EQ(host::last_record_number(), before + 1) << text;
   }
 }
@@ -150,13 +150,13 @@ TEST_F(StampFloorTest, NeverUsesAPartOfACopy) {
   for (std::size_t size = 0; size <= whole.size(); ++size) {
     if (size > kCopy && size < whole.size() - kCopy) continue;  // between the copies
     put(whole.substr(0, size));
-    ASSERT_EQ(read(), size < kCopy ? StampFloor::Kept{.is_damaged = true} : kWritten) << size;
+    ASSERT_EQ(read(), size < kCopy ? StampFloor::StoredFloor{.is_damaged = true} : kWritten) << size;
   }
 }
 
 /// A file is written over, and the power fails: each sector is the old or the new one.
 TEST_F(StampFloorTest, UsesTheHigherOfTwoCopies) {
-  const StampFloor::Kept later{.floor = 1.9e9, .wall = 1.8e9, .ledger = {.reports = 8, .log = 4}};
+  const StampFloor::StoredFloor later{.floor = 1.9e9, .wall = 1.8e9, .ledger = {.reports = 8, .log = 4}};
   StampFloor(folder_.string()).write(kWritten);
   const std::string before = bytes();
   StampFloor(folder_.string()).write(later);
@@ -176,7 +176,7 @@ TEST_F(StampFloorTest, ForgetsABoundThatIsFarAhead) {
   }
   floor.write({.floor = 1.7e9, .wall = 1.6e9, .ledger = {.reports = 7, .log = 3}, .lead = 1e8});
   floor.forget();
-  EXPECT_EQ(read(), (StampFloor::Kept{.ledger = {.reports = 7, .log = 3}, .overruled = 1.7e9}));
+  EXPECT_EQ(read(), (StampFloor::StoredFloor{.ledger = {.reports = 7, .log = 3}, .overruled = 1.7e9}));
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ TEST(StatusCache, HasAnAgeInWholeSeconds) {
 TEST(StatusCache, IsUsableAfterItMayHaveChanged) {
   StatusCache known;
   known.on_status("{}", {}, at(0), 0);
-  known.no_longer_fresh();
+  known.mark_stale();
   EXPECT_FALSE(known.is_fresh(at(1)));
   EXPECT_TRUE(known.answer(at(1)));
   known.on_status("{}", {}, at(2), 0);

@@ -36,16 +36,16 @@ queues::QueuedMap taken_of(const std::vector<icd::MapUpdate>& maps) {
 TEST(StitchedMap, HasTheCellsOfItsParts) {
   const auto waiting = taken_of({row_at(0, {1, 2, 3}), row_at(3, {4}), row_at(2, {5, 6, 7})});
   ASSERT_EQ(waiting.updates.size(), 3);
-  const Packed map = pack_map(waiting);
+  const PackedMap map = pack_map(waiting);
   EXPECT_FALSE(map.body.empty());
   EXPECT_THAT(codec::bytes_of(map.stitched), ElementsAre(1, 2, 5, 6, 7));
 }
 
 TEST(StitchedMap, IsStitchedOnce) {
   auto waiting = taken_of({row_at(0, {1, 2, 3}), row_at(3, {4})});
-  const Packed first = pack_map(waiting);
+  const PackedMap first = pack_map(waiting);
   waiting.map.data = first.stitched;
-  const Packed second = pack_map(waiting);
+  const PackedMap second = pack_map(waiting);
   EXPECT_EQ(second.body, first.body);
   EXPECT_EQ(second.stitched.raw_size, 0);
 }
@@ -67,7 +67,7 @@ TEST(StitchedMap, FillsItsGapsWithSentCells) {
   const auto take = [&](const std::vector<icd::MapUpdate>& maps) {
     for (const icd::MapUpdate& map : maps) queue.add(++number, map, queues::Instant{});
     auto waiting = *queue.pop();
-    Packed map = pack_map(waiting);
+    PackedMap map = pack_map(waiting);
     EXPECT_TRUE(map.drawn);
     if (map.drawn) queue.canvases().lay(waiting.map.name, *map.drawn);
     return map;
@@ -90,7 +90,7 @@ queues::QueuedMap cloud_at(float begin, int points, queues::Precision precision)
 TEST(PackedCloud, HasItsPrecision) {
   using queues::Precision;
   for (const Precision each : {Precision::Exact, Precision::Millimetre, Precision::EightMillimetres}) {
-    const Packed map = pack_map(cloud_at(5, 2000, each));
+    const PackedMap map = pack_map(cloud_at(5, 2000, each));
     EXPECT_EQ(map.precision, each);
     EXPECT_EQ(map.points_size, 2000 * 12);
   }
@@ -126,7 +126,7 @@ TEST(PackedCloud, IsUnchangedIfPackingNeedsTooMuchMemory) {
     queues::QueuedMap waiting = cloud_at(5, 2000, precision);
     const auto is_packed = [&](std::size_t points) {
       waiting.map.data = cloud_along_x("r1", std::vector<float>(points)).data;
-      const Packed map = pack_map(waiting);
+      const PackedMap map = pack_map(waiting);
       EXPECT_EQ(map.effort == pack::Effort::None, map.body.size() > waiting.map.data.raw_size);
       return map.effort == pack::Effort::Full;
     };

@@ -54,14 +54,14 @@ struct Process {
         rejected(loop, writer, folder + "/rejected"),
         telemetry(loop, servers, workers, settings, std::move(token), counts, rejected, random, journal,
                   delivered) {
-    const journal::Carried carried = journal.read();
+    const journal::HandoverState carried = journal.read();
     journal.begin({.boot = "b", .at = loop.now(), .stamp = loop.stamp_now()});
-    telemetry.carry_on(carried);
+    telemetry.restore(carried);
     telemetry.start();
   }
 
   /// Few markers are answered at once.
-  icd::Checked<void> take(icd::MarkersUpdate update) {
+  icd::Checked<void> accept(icd::MarkersUpdate update) {
     std::optional<icd::Checked<void>> said;
     telemetry.accept(std::move(update), {.bytes = 10},
                      [&](icd::Checked<void> taken) { said = std::move(taken); });
@@ -96,11 +96,11 @@ class TelemetryTest : public testing::Test {
   bool eventually(Process& process, Done done) {
     return loop::turn_until(loop_, [&] {
       if (done()) return true;
-      process.telemetry.link_is_back();
+      process.telemetry.on_link_up();
       return false;
     });
   }
-  journal::Carried left() const { return journal::left_in(folder_.path() + "/journal"); }
+  journal::HandoverState left() const { return journal::left_in(folder_.path() + "/journal"); }
 
   host::Folder folder_;
   loop::Loop loop_;
@@ -179,7 +179,7 @@ TEST_F(TelemetryTest, KeepsMessagesUntilReplacementsAreStored) {
   ASSERT_TRUE(eventually(*process, [&] { return replaced(0); }));
   EXPECT_EQ(left().robots().size(), 1u);
   EXPECT_FALSE(process->rejected.has_stored_all());
-  ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("a", "newer")}}));
+  ASSERT_TRUE(process->accept(icd::MarkersUpdate{{marker("a", "newer")}}));
   held.set_value();
   ASSERT_TRUE(eventually(*process, [&] { return replaced(1) && process->rejected.has_stored_all(); }));
   EXPECT_THAT(left().robots(), IsEmpty());
@@ -188,7 +188,7 @@ TEST_F(TelemetryTest, KeepsMessagesUntilReplacementsAreStored) {
 
 TEST_F(TelemetryTest, RetriesNoMarkerThatANewerOneReplaces) {
   const auto process = process_without_a_token();
-  ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("a", "newer"), marker("b", "other")}}));
+  ASSERT_TRUE(process->accept(icd::MarkersUpdate{{marker("a", "newer"), marker("b", "other")}}));
   EXPECT_TRUE(process->telemetry.resend(icd::MarkersUpdate{{marker("a", "older")}}));
   EXPECT_THAT(texts(left().markers()), ElementsAre("newer", "other"));
   EXPECT_EQ(process->telemetry.waiting(TrafficKind::Markers), 2u);
@@ -196,7 +196,7 @@ TEST_F(TelemetryTest, RetriesNoMarkerThatANewerOneReplaces) {
 
 TEST_F(TelemetryTest, RetriesNoMarkerThatWasDeleted) {
   const auto process = process_without_a_token();
-  ASSERT_TRUE(process->take(icd::MarkersUpdate{{kWipe}}));
+  ASSERT_TRUE(process->accept(icd::MarkersUpdate{{kWipe}}));
   EXPECT_TRUE(process->telemetry.resend(icd::MarkersUpdate{{marker("a", "older")}}));
   EXPECT_THAT(texts(left().markers()), ElementsAre("wipe"));
   EXPECT_EQ(process->telemetry.waiting(TrafficKind::Markers), 1u);
@@ -204,7 +204,7 @@ TEST_F(TelemetryTest, RetriesNoMarkerThatWasDeleted) {
 
 TEST_F(TelemetryTest, RetriesADeleteAllBeforeNewerMarkers) {
   const auto process = process_without_a_token();
-  ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("", "newer")}}));
+  ASSERT_TRUE(process->accept(icd::MarkersUpdate{{marker("", "newer")}}));
   EXPECT_TRUE(process->telemetry.resend(icd::MarkersUpdate{{kWipe}}));
   EXPECT_THAT(texts(left().markers()), ElementsAre("wipe", "newer"));
   EXPECT_EQ(process->telemetry.waiting(TrafficKind::Markers), 2u);
@@ -212,7 +212,7 @@ TEST_F(TelemetryTest, RetriesADeleteAllBeforeNewerMarkers) {
 
 TEST_F(TelemetryTest, RetriesAMarkerThatNothingReplaces) {
   const auto process = process_without_a_token();
-  ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("b", "other")}}));
+  ASSERT_TRUE(process->accept(icd::MarkersUpdate{{marker("b", "other")}}));
   EXPECT_TRUE(process->telemetry.resend(icd::MarkersUpdate{{marker("a", "older")}}));
   EXPECT_THAT(texts(left().markers()), UnorderedElementsAre("older", "other"));
 }
@@ -220,7 +220,7 @@ TEST_F(TelemetryTest, RetriesAMarkerThatNothingReplaces) {
 TEST_F(TelemetryTest, RejectsADeleteAllThatFailsAlone) {
   TelemetryStub post(true);
   const auto process = process_with(post.peer);
-  ASSERT_TRUE(process->take(icd::MarkersUpdate{{kWipe, marker("a", "1"), marker("b", "2")}}));
+  ASSERT_TRUE(process->accept(icd::MarkersUpdate{{kWipe, marker("a", "1"), marker("b", "2")}}));
   ASSERT_TRUE(eventually(*process, [&] { return process->telemetry.waiting(TrafficKind::Markers) == 0; }));
   ASSERT_TRUE(eventually(
       *process, [&] { return !process->rejected.rows().empty() && left().markers().markers.empty(); }));
@@ -232,7 +232,7 @@ TEST_F(TelemetryTest, KeepsADeleteAllIfEverythingFails) {
   TelemetryStub post(false);
   const auto process = process_with(post.peer);
   const icd::MarkersUpdate all{{kWipe, marker("a", "1"), marker("b", "2")}};
-  ASSERT_TRUE(process->take(all));
+  ASSERT_TRUE(process->accept(all));
   ASSERT_TRUE(eventually(*process, [&] { return post.requests >= 20; }));
   EXPECT_THAT(process->rejected.rows(), IsEmpty());
   EXPECT_THAT(texts(left().markers()), ElementsAre("wipe", "1", "2"));
@@ -241,14 +241,14 @@ TEST_F(TelemetryTest, KeepsADeleteAllIfEverythingFails) {
 TEST_F(TelemetryTest, ChangesQueuedMarkersInAFullQueue) {
   settings_.queues.marker_bytes = 2 * icd::bytes_of(marker("a", "old"));
   const auto process = process_without_a_token();
-  ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("a", "old")}}));
-  const auto said = process->take(icd::MarkersUpdate{{marker("b", "new"), marker("a", "now")}});
+  ASSERT_TRUE(process->accept(icd::MarkersUpdate{{marker("a", "old")}}));
+  const auto said = process->accept(icd::MarkersUpdate{{marker("b", "new"), marker("a", "now")}});
   ASSERT_FALSE(said);
   EXPECT_EQ(said.error().status, icd::Status::TooManyRequests);
   EXPECT_EQ(said.error().parts, 1u) << said.error().sentence;
   EXPECT_EQ(said.error().setting, "queues.marker_bytes");
   EXPECT_EQ(left().markers().markers, std::vector{marker("a", "now")});
-  const auto none = process->take(icd::MarkersUpdate{{marker("b", "new")}});
+  const auto none = process->accept(icd::MarkersUpdate{{marker("b", "new")}});
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().parts, 0u) << none.error().sentence;
   EXPECT_EQ(none.error().setting, "queues.marker_bytes");
@@ -257,7 +257,7 @@ TEST_F(TelemetryTest, ChangesQueuedMarkersInAFullQueue) {
 TEST_F(TelemetryTest, CountsALifetimeOverARestart) {
   icd::Marker lasting = marker("a", "lasting"), expired = marker("b", "expired");
   lasting.lifetime = 100, expired.lifetime = 30;
-  ASSERT_TRUE(process_without_a_token()->take(icd::MarkersUpdate{{lasting, expired}}));
+  ASSERT_TRUE(process_without_a_token()->accept(icd::MarkersUpdate{{lasting, expired}}));
   loop_.set_stamp(loop_.stamp_now() + 40);
   TelemetryStub post(true);
   const auto process = process_with(post.peer);
@@ -277,7 +277,7 @@ TEST_F(TelemetryTest, IsBehindUntilItIsDelivered) {
       markers{TrafficKind::Markers, ""};
   EXPECT_FALSE(process->telemetry.oldest_acceptance(robot));
   ASSERT_TRUE(process->telemetry.accept(pose("r2", 7.5), 10));
-  ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("", "one")}}));
+  ASSERT_TRUE(process->accept(icd::MarkersUpdate{{marker("", "one")}}));
   EXPECT_TRUE(process->telemetry.oldest_acceptance(robot));
   EXPECT_TRUE(process->telemetry.oldest_acceptance(markers));
   EXPECT_FALSE(process->telemetry.oldest_acceptance(other)) << "it posted nothing";
@@ -323,7 +323,7 @@ TEST_P(OneRejectedRobot, FailsAlone) {
   EXPECT_TRUE(process->telemetry.oldest_acceptance({TrafficKind::State, "r5"}));
 
   post.rejects = false;
-  process->telemetry.endpoint_changed(icd::BearerToken::parse("another-token"));
+  process->telemetry.on_endpoint_changed(icd::BearerToken::parse("another-token"));
   EXPECT_TRUE(eventually(*process, [&] { return row("r5").forwarded == 1; })) << "it rests no longer";
 }
 INSTANTIATE_TEST_SUITE_P(, OneRejectedRobot,
@@ -335,7 +335,7 @@ INSTANTIATE_TEST_SUITE_P(, OneRejectedRobot,
 TEST_F(TelemetryTest, DeliversMarkersBesideARejectedOne) {
   RejectingStub post("403 Forbidden", {"bad"});
   const auto process = process_with(post.peer);
-  ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("a", "1"), marker("b", "bad"), marker("c", "2")}}));
+  ASSERT_TRUE(process->accept(icd::MarkersUpdate{{marker("a", "1"), marker("b", "bad"), marker("c", "2")}}));
   const auto shown = [&] { return process->delivered.markers().changes(0).markers.size(); };
   ASSERT_TRUE(eventually(
       *process, [&] { return shown() == 2 && process->telemetry.waiting(TrafficKind::Markers) == 1; }));

@@ -114,7 +114,7 @@ class TooLargeMap : public testing::Test, protected MapsParts {
       maps_.accept(each, {.bytes = 10}, nullptr,
                    [&](const icd::Checked<void>& said) { taken += said ? 1 : 0; });
     ASSERT_TRUE(loop::turn_until(loop_, [&] { return taken == updates.size(); }));
-    maps_.endpoint_changed(icd::BearerToken::parse("a-token"));
+    maps_.on_endpoint_changed(icd::BearerToken::parse("a-token"));
   }
   icd::MapUpdate cloud_of(int points) {
     std::uniform_real_distribution<float> place(-100, 100);
@@ -183,7 +183,7 @@ TEST_F(TooLargeMap, IsSentInSmallerMessagesAfterThreeResetsWhileOthersAreDeliver
   EXPECT_EQ(delivered_, 0u);
   ASSERT_TRUE(loop::turn_until(loop_, [&] {
     counts_.count_forwarded({TrafficKind::State, "r2"}, 1, 100, 200, 0);
-    maps_.link_is_back();  // no back-off
+    maps_.on_link_up();  // no back-off
     return maps_.waiting({TrafficKind::Cloud, "r1"}) == 0;
   }));
   EXPECT_EQ(delivered_, std::size_t{12} * kPoints * kClouds);
@@ -197,7 +197,7 @@ TEST_F(TooLargeMap, IsSentInSmallerMessagesAfterThreePagesWith400WhileOthersAreD
   const auto others_pass_until = [&](const std::function<bool()>& is_done) {
     return loop::turn_until(loop_, [&] {
       counts_.count_forwarded({TrafficKind::State, "r2"}, 1, 100, 200, 0);
-      maps_.link_is_back();  // no back-off
+      maps_.on_link_up();  // no back-off
       return is_done();
     });
   };
@@ -273,12 +273,12 @@ TEST_F(TooLargeMap, BeginsAgainAtAnotherAddress) {
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return row().forwarded == 3; }));
   ProxyStub other(kPage);
   settings_.command_post.mapping = other.address();
-  maps_.endpoint_changed(icd::BearerToken::parse("a-token"));
+  maps_.on_endpoint_changed(icd::BearerToken::parse("a-token"));
   ASSERT_TRUE(becomes(0));
   const auto points = other.points();
   for (const float x : xs_of(cloud.data)) ASSERT_TRUE(points.contains(x));
   settings_.command_post.mapping = proxy_->address();  // outlives the connections to it
-  maps_.endpoint_changed(icd::BearerToken::parse("a-token"));
+  maps_.on_endpoint_changed(icd::BearerToken::parse("a-token"));
 }
 
 TEST_F(TooLargeMap, IsSentInRowsIfItIsASingleGrid) {

@@ -15,7 +15,7 @@ TEST(TrafficCounts, CountsTheMapsOfEachRobot) {
   counts.rounded_to(kCloudOfR1, queues::Precision::EightMillimetres);
   counts.count_forwarded(kCloudOfR1, 2, 900, 200, 12.0);
   counts.count_accepted({TrafficKind::Grid, "r1"}, 5, 13.0);
-  counts.not_taken({TrafficKind::Grid, "r1"}, DeliveryFailure::Throttled, 429, "too frequent");
+  counts.count_undelivered({TrafficKind::Grid, "r1"}, DeliveryFailure::Throttled, 429, "too frequent");
 
   ASSERT_EQ(counts.rows().size(), 2u);
   const facts::ActivityRow &grid = counts.rows().at({TrafficKind::Grid, "r1"}),
@@ -39,7 +39,7 @@ TEST(TrafficCounts, CountsTheMapsOfEachRobot) {
 
 TEST(TrafficCounts, ClearsTheSentenceOnceAMessageIsDelivered) {
   TrafficCounts counts([] {});
-  counts.not_taken(kCloudOfR1, DeliveryFailure::Failed, 0, "connection reset");
+  counts.count_undelivered(kCloudOfR1, DeliveryFailure::Failed, 0, "connection reset");
   counts.count_forwarded(kCloudOfR1, 1, 10, 200, 1.0);
   EXPECT_EQ(counts.rows().at(kCloudOfR1).last_sentence, "");
   EXPECT_EQ(counts.rows().at(kCloudOfR1).failed, 1u);

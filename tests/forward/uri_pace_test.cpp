@@ -21,12 +21,12 @@ TEST(UriPace, StampsDoNotGoBackAfterARestart) {
   }
   journal::Journal journal(loop, folder.path() + "/journal");
   UriPace pace(icd::Uri::StateUpdate, 1, random, journal), of_maps(icd::Uri::MapUpdate, 1, random, journal);
-  const journal::Carried carried = journal.read();
-  pace.carry_on(carried, loop.now());
-  of_maps.carry_on(carried, loop.now());
+  const journal::HandoverState carried = journal.read();
+  pace.restore(carried, loop.now());
+  of_maps.restore(carried, loop.now());
   EXPECT_EQ(pace.next_stamp(8), 10);
   EXPECT_EQ(pace.next_stamp(12), 12);
-  pace.carry_on(carried, loop.now());
+  pace.restore(carried, loop.now());
   EXPECT_EQ(pace.next_stamp(11), 12);
   EXPECT_EQ(of_maps.next_stamp(8), 8) << "each URI has its own order";
 }

@@ -18,7 +18,7 @@ void try_card(Input text) {
   }
   const auto card = host::UntrustedFolder::open(folder.path());
   require(card.has_value());
-  const applier::Found found = applier::read_card(*card, settings::Settings{});
+  const applier::CardResult found = applier::read_card(*card, settings::Settings{});
   require(found.left_alone.empty());
   for (const std::string& error : found.errors) {
     require(error.starts_with("adit/"));

@@ -12,7 +12,7 @@ namespace {
 /// Of whatever is asked for, nothing is set that nobody may ask for, nor to no time of a box.
 void stays_in_bounds(const clock::Request& request) {
   constexpr double kAt = 100;  // seconds since the machine's start
-  if (!clock::hindrance(request, kAt, {}).empty()) return;
+  if (!clock::refusal_reason(request, kAt, {}).empty()) return;
   const double set = request.time + (kAt - request.at);
   require(set >= clock::kEarliest && set <= clock::kLatest + 60);
   require(request.at >= 0 && request.at <= kAt);

@@ -52,10 +52,10 @@ void require_plain(std::string_view head) {
 void try_heads(Input head) {
   const std::size_t piece = take_piece(head);
   HeadChecker at_once, cut;
-  const Verdict verdict = at_once.look(head);
+  const Verdict verdict = at_once.check(head);
   Verdict so_far = Verdict::More;
   for (std::size_t here = piece; so_far == Verdict::More; here += piece) {
-    so_far = cut.look(std::string(head.substr(0, here)));  // which lies elsewhere each time
+    so_far = cut.check(std::string(head.substr(0, here)));  // which lies elsewhere each time
     if (here >= head.size()) break;
   }
   require(so_far == verdict);

@@ -6,19 +6,19 @@
 namespace adit::fuzz {
 namespace {
 
-using journal::Carried;
+using journal::HandoverState;
 using journal::RecordKind;
 
 using Records = std::vector<std::pair<Kind, std::string>>;
 
-Records snapshot_of(const Carried& carried) {
+Records snapshot_of(const HandoverState& carried) {
   Records records;
   carried.write([&records](Kind kind, std::string_view said) { records.emplace_back(kind, said); });
   return records;
 }
 
-Carried replayed(const Records& records) {
-  Carried carried;
+HandoverState replayed(const Records& records) {
+  HandoverState carried;
   for (const auto& [kind, said] : records) carried.apply(kind, said);
   return carried;
 }

@@ -5,14 +5,14 @@
 namespace adit::fuzz {
 
 void try_network(Input text) {
-  settles(text, codec::read_file<network::Wanted>);
+  settles(text, codec::read_file<network::ChangeRequest>);
   settles(text, codec::read_file<network::Decision>);
   settles(text, codec::read_file<network::Probe>);
   settles(text, codec::read_file<network::Endpoints>);
   settles(text, codec::read_file<network::TeamPorts>);
-  settles(text, codec::read_file<network::Forget>);
+  settles(text, codec::read_file<network::FactoryRequest>);
   settles(text, codec::read_file<network::Status>);
-  settles(text, codec::read_file<network::Probed>);
+  settles(text, codec::read_file<network::ProbeResult>);
   settles(text, codec::read_file<network::AddressConflicts>);
   settles(text, network::read_kept, network::write_kept);
 }

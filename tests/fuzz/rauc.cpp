@@ -8,8 +8,8 @@ void try_rauc(Input text) {
   const auto status = update::read_status(text);
   require(status || !status.error().empty());
   if (const auto bundle = update::read_info(text)) {
-    const update::Running running{.compatible = "adit-qemu-virt", .version = "0.1.0"};
-    const bool may_be_installed = update::hindrance(*bundle, running, true).empty();
+    const update::RunningSystem running{.compatible = "adit-qemu-virt", .version = "0.1.0"};
+    const bool may_be_installed = update::refusal_reason(*bundle, running, true).empty();
     require(!may_be_installed || bundle->compatible == running.compatible);
   } else {
     require(!bundle.error().empty());

@@ -32,7 +32,7 @@ struct Comparison {
   bool operator()(const Value::Bytes& ours) const {
     return theirs.is_binary() && std::ranges::equal(theirs.get_binary(), ours.bytes);
   }
-  bool operator()(Value::UnderTag) const { return true; }  // whatever they read there
+  bool operator()(Value::TaggedValue) const { return true; }  // whatever they read there
   bool operator()(Value::SplitOut) const { return false; }
   bool operator()(const Value::Array& ours) const {
     return theirs.is_array() && std::ranges::equal(ours, theirs, is_same);

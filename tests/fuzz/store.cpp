@@ -11,7 +11,7 @@ namespace {
 using namespace store;
 
 constexpr std::uint64_t kSalt = 7;
-constexpr Keeping kKeeping{{8, 1}, 0, false};
+constexpr LogOptions kKeeping{{8, 1}, 0, false};
 
 FileName name_of(unsigned byte) {
   if (byte % 4 == 3) return {FileName::Kind::Snapshot, 2, kSalt};

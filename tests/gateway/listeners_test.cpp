@@ -130,7 +130,7 @@ TEST_F(ListenersTest, PortsAreOpenUntilTheirLastClientIsServed) {
 }
 
 TEST_F(ListenersTest, SocketForStunnelIsNoAddressOfTheSettings) {
-  std::vector<host::Inherited> given;
+  std::vector<host::InheritedDescriptor> given;
   given.push_back({"tls", std::move(*intake::open_listen_socket({.address = "127.0.0.1", .interface = ""}))});
   const std::uint16_t tls = intake::port_of(given[0].descriptor.get());
   sockets_ = *ListenSockets::take_over(std::move(given));

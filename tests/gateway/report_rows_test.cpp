@@ -13,7 +13,7 @@ class NoOutput final : public dispatch::Output {
   bool write(std::span<const dispatch::Report>, const dispatch::Run*, dispatch::Flush) override {
     return false;
   }
-  void tell(dispatch::ClientId, const dispatch::ClientAnswer&, const dispatch::Report&) override {}
+  void answer_client(dispatch::ClientId, const dispatch::ClientAnswer&, const dispatch::Report&) override {}
 };
 
 std::vector<std::int64_t> latest(const std::vector<ReportState>& states, std::size_t most) {

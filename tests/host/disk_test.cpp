@@ -36,7 +36,7 @@ class WearTest : public testing::Test {
     folder_.put("device/life_time", life);
     folder_.put("device/pre_eol_info", spares);
   }
-  std::expected<Wear, std::string> wear() { return wear_of(folder_.path(), folder_ / "block"); }
+  std::expected<Wear, std::string> wear() { return read_wear(folder_.path(), folder_ / "block"); }
 
   Folder folder_;
 };
@@ -79,7 +79,7 @@ TEST_F(WearTest, IsUnknownIfAFileIsUnreadableOrInvalid) {
   fs::create_directory(folder_ / "device/life_time");
   ASSERT_FALSE(wear());
   EXPECT_THAT(wear().error(), HasSubstr("life_time: is not a regular file"));
-  EXPECT_FALSE(wear_of(folder_ / "absent", folder_ / "block"));
+  EXPECT_FALSE(read_wear(folder_ / "absent", folder_ / "block"));
 }
 
 }  // namespace

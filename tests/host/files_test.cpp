@@ -37,12 +37,12 @@ TEST(ReadFile, LimitsTheSizeToOneMebibyte) {
 
 TEST(MayExist, IsFalseOnlyIfTheFileIsCertainlyAbsent) {
   const Folder folder;
-  EXPECT_FALSE(may_exist(folder / "none"));
-  EXPECT_FALSE(may_exist(folder / "none/none"));
-  EXPECT_TRUE(may_exist(folder.put("empty", "")));
-  EXPECT_TRUE(may_exist(folder.path()));
+  EXPECT_FALSE(can_exist(folder / "none"));
+  EXPECT_FALSE(can_exist(folder / "none/none"));
+  EXPECT_TRUE(can_exist(folder.put("empty", "")));
+  EXPECT_TRUE(can_exist(folder.path()));
   ASSERT_EQ(symlink("round", (folder / "round").c_str()), 0);
-  EXPECT_TRUE(may_exist(folder / "round")) << "an unreadable directory may contain the file";
+  EXPECT_TRUE(can_exist(folder / "round")) << "an unreadable directory may contain the file";
 }
 
 TEST(WriteFile, CreatesAFileOfTheGivenMode) {
@@ -95,7 +95,7 @@ TEST(ParseKept, TakesTheCopyOfADamagedFileAlone) {
   folder.put("kept", "");
   EXPECT_EQ(read(), 2) << "by an earlier version";
   ASSERT_TRUE(remove_file(folder / "kept"));
-  EXPECT_FALSE(may_exist(folder / "kept.copy"));
+  EXPECT_FALSE(can_exist(folder / "kept.copy"));
   folder.put("kept", "5");
   std::filesystem::create_directory(folder / "kept.copy");
   EXPECT_THAT(parse_kept(folder / "kept", parse).error(), HasSubstr("not a regular file")) << "not damaged";

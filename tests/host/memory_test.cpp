@@ -85,7 +85,7 @@ TEST(TellConsole, ShowsAllButRemembersOnlyTheMessage) {
   const auto before = records_after(0);
   const std::uint64_t last = before.empty() ? 0 : before.back().seq;
   testing::internal::CaptureStderr();
-  tell_console(Level::Notice, "the page asks for this code", {{"code", "31415926"}});
+  log_to_console(Level::Notice, "the page asks for this code", {{"code", "31415926"}});
   EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::HasSubstr("code=31415926"));
   const auto now = records_after(last);
   ASSERT_THAT(now, SizeIs(1));

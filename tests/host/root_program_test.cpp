@@ -47,7 +47,7 @@ TEST(Nonce, IsNeverTheSameTwice) {
 class RootProgramTest : public testing::Test {
  protected:
   /// Writes the status as the program does.
-  void tell(const std::string& nonce) { ASSERT_TRUE(file_.tell(Status{nonce})); }
+  void write_status(const std::string& nonce) { ASSERT_TRUE(file_.write(Status{nonce})); }
   bool is_left() const { return fs::exists(requests_ / kFile); }
   /// Takes the request as the program does.
   std::optional<Request> taken() {
@@ -74,7 +74,7 @@ TEST_F(RootProgramTest, IsStartingAfterABootIfItHasAUnit) {
   EXPECT_TRUE(program.is_starting() && program.runs_here());
   EXPECT_EQ(program.status_error(), "adit-x is starting, for at most 5 minutes: try again");
   EXPECT_EQ(program.refuse().error().status, icd::Status::ServiceUnavailable);
-  tell("");
+  write_status("");
   time_.pass(kFresh);
   EXPECT_FALSE(program.is_starting());
   EXPECT_EQ(program.status_error(), "");
@@ -98,30 +98,30 @@ TEST_F(RootProgramTest, RunsEvenIfItsStatusIsUnreadable) {
 }
 
 TEST_F(RootProgramTest, IsReadAgainOnceItsStatusIsOld) {
-  tell("a");
+  write_status("a");
   EXPECT_EQ(program_.status()->nonce, "a");
-  tell("b");
+  write_status("b");
   EXPECT_EQ(program_.status()->nonce, "a");
   time_.pass(kFresh);
   EXPECT_EQ(program_.status()->nonce, "b");
 }
 
 TEST_F(RootProgramTest, IsAwaitedUntilItsStatusNamesTheRequest) {
-  tell("");
+  write_status("");
   const Request request;
   ASSERT_TRUE(program_.ask(kFile, request));
-  EXPECT_TRUE(program_.waits());
+  EXPECT_TRUE(program_.is_pending());
   EXPECT_EQ(fs::status(requests_ / kFile).permissions(), fs::perms(0600));
   EXPECT_EQ(taken()->nonce, request.nonce);
   run_.put(kStatusFile, "{");
   EXPECT_FALSE(program_.check());
-  EXPECT_TRUE(program_.waits()) << "an unreadable status is not an answer";
-  tell(request.nonce);
+  EXPECT_TRUE(program_.is_pending()) << "an unreadable status is not an answer";
+  write_status(request.nonce);
   EXPECT_FALSE(program_.check());
-  EXPECT_FALSE(program_.waits());
-  tell("");
+  EXPECT_FALSE(program_.is_pending());
+  write_status("");
   EXPECT_FALSE(program_.check());
-  EXPECT_FALSE(program_.waits()) << "a later start of the program does not know the request";
+  EXPECT_FALSE(program_.is_pending()) << "a later start of the program does not know the request";
 }
 
 TEST_F(RootProgramTest, IsNotAwaitedBeyondItsTimeout) {
@@ -129,14 +129,14 @@ TEST_F(RootProgramTest, IsNotAwaitedBeyondItsTimeout) {
   ASSERT_TRUE(program_.ask(kFile, request));
   time_.pass(60s - 1ms);
   EXPECT_FALSE(program_.check());
-  EXPECT_TRUE(program_.waits() && is_left());
+  EXPECT_TRUE(program_.is_pending() && is_left());
   time_.pass(1ms);
   EXPECT_TRUE(program_.check());
   EXPECT_FALSE(program_.check()) << "only once";
-  EXPECT_FALSE(program_.waits() || is_left());
+  EXPECT_FALSE(program_.is_pending() || is_left());
   EXPECT_EQ(program_.trouble(),
             "adit-x did not read the request: restart the box; on a PC, see journalctl -u adit-x");
-  tell(request.nonce);
+  write_status(request.nonce);
   program_.check();
   EXPECT_EQ(program_.trouble(), "") << "the answer was late, but it was read";
 }
@@ -146,14 +146,14 @@ TEST_F(RootProgramTest, AcceptsARequestAfterATimeout) {
   time_.pass(60s);
   EXPECT_TRUE(program_.check());
   ASSERT_TRUE(program_.ask(kFile, Request{}));
-  EXPECT_TRUE(program_.waits());
+  EXPECT_TRUE(program_.is_pending());
   EXPECT_EQ(program_.trouble(), "");
 }
 
 TEST_F(RootProgramTest, IsNotAwaitedIfTheRequestCannotBeWritten) {
   fs::remove_all(requests_.path());
   EXPECT_FALSE(program_.ask(kFile, Request{}));
-  EXPECT_FALSE(program_.waits());
+  EXPECT_FALSE(program_.is_pending());
   fs::create_directory(requests_.path());
 }
 
@@ -217,8 +217,8 @@ TEST(StatusFile, TellsTheFirstStartSinceTheBoot) {
   const Folder run;
   StatusFile file(run / kStatusFile);
   EXPECT_FALSE(file.read_earlier<Status>());
-  EXPECT_EQ(file.tell(Status{"a"}), true);
-  EXPECT_EQ(file.tell(Status{"a"}), false) << "the status was written";
+  EXPECT_EQ(file.write(Status{"a"}), true);
+  EXPECT_EQ(file.write(Status{"a"}), false) << "the status was written";
   EXPECT_EQ(file.read_earlier<Status>()->nonce, "a");
   run.put(kStatusFile, "{");
   ASSERT_TRUE(file.read_earlier<Status>()) << "an unreadable status is not the first start";

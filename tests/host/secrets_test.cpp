@@ -110,7 +110,7 @@ TEST_F(ReadSecrets, ReplacesNoDamagedSavedToken) {
     ASSERT_TRUE(secrets.has_value()) << secrets.error();
     EXPECT_FALSE(secrets->token("scoring")) << "the given one was replaced";
     EXPECT_EQ(secrets->token("mapping")->reveal(), "saved-one");
-    EXPECT_EQ(secrets->odd_tokens()["scoring"],
+    EXPECT_EQ(secrets->token_warnings()["scoring"],
               "the saved token scoring is damaged; set it again: " + (state_ / "secrets/scoring.token") +
                   ": expected one token of 1 to 256 visible ASCII characters");
   }
@@ -139,8 +139,8 @@ TEST_F(ReadSecrets, ReplacesNoLostSavedToken) {
   const auto secrets = read(folder_.path());
   ASSERT_TRUE(secrets.has_value()) << secrets.error();
   EXPECT_FALSE(secrets->token("scoring")) << "the given one is valid again";
-  EXPECT_EQ(secrets->odd_tokens()["scoring"], "the saved token scoring is lost; set it again: " +
-                                                  (state_ / "secrets/scoring.token") + " is gone");
+  EXPECT_EQ(secrets->token_warnings()["scoring"], "the saved token scoring is lost; set it again: " +
+                                                      (state_ / "secrets/scoring.token") + " is gone");
   std::filesystem::remove(state_ / "secrets");
   EXPECT_FALSE(read(folder_.path())->token("scoring")) << "with its directory";
   EXPECT_TRUE(read(folder_.path())->token("mapping")) << "it was never saved";

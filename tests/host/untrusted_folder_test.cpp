@@ -21,7 +21,7 @@ using testing::HasSubstr;
 
 class UntrustedFolderTest : public testing::Test {
  protected:
-  std::expected<std::optional<std::string>, UntrustedFolder::Untaken> take(const std::string& name) {
+  std::expected<std::optional<std::string>, UntrustedFolder::ReadFailure> take_file(const std::string& name) {
     auto opened = UntrustedFolder::open(folder.path());
     EXPECT_TRUE(opened);
     return opened->take_file(name);
@@ -35,15 +35,15 @@ class UntrustedFolderTest : public testing::Test {
 
 TEST_F(UntrustedFolderTest, GivesAFileOnce) {
   folder.put("wanted.json", "{}");
-  EXPECT_EQ(take("wanted.json").value(), "{}");
+  EXPECT_EQ(take_file("wanted.json").value(), "{}");
   EXPECT_FALSE(is_there("wanted.json"));
-  EXPECT_EQ(take("wanted.json").value(), std::nullopt);
+  EXPECT_EQ(take_file("wanted.json").value(), std::nullopt);
 }
 
 TEST_F(UntrustedFolderTest, FollowsNoLink) {
   folder.put("secret", "of root");
   ASSERT_EQ(symlink((folder / "secret").c_str(), (folder / "wanted.json").c_str()), 0);
-  const auto taken = take("wanted.json");
+  const auto taken = take_file("wanted.json");
   ASSERT_FALSE(taken);
   EXPECT_THAT(taken.error().why, HasSubstr("wanted.json"));
   EXPECT_FALSE(is_there("wanted.json")) << "the request must be removed, or it repeats";
@@ -52,10 +52,10 @@ TEST_F(UntrustedFolderTest, FollowsNoLink) {
 
 TEST_F(UntrustedFolderTest, RejectsFifosAndDirectories) {
   ASSERT_EQ(mkfifo((folder / "wanted.json").c_str(), 0600), 0);
-  EXPECT_THAT(take("wanted.json").error().why, HasSubstr("is not a regular file"));
+  EXPECT_THAT(take_file("wanted.json").error().why, HasSubstr("is not a regular file"));
   EXPECT_FALSE(is_there("wanted.json"));
   ASSERT_EQ(mkdir((folder / "wanted.json").c_str(), 0700), 0);
-  EXPECT_FALSE(take("wanted.json"));
+  EXPECT_FALSE(take_file("wanted.json"));
   EXPECT_FALSE(is_there("wanted.json"));
 }
 
@@ -66,7 +66,7 @@ TEST_F(UntrustedFolderTest, DeletesADirectoryWithoutFollowingLinks) {
   folder.put("wanted.json/deeper/file", "x");
   ASSERT_EQ(symlink((folder / "secret").c_str(), (folder / "wanted.json/link").c_str()), 0);
   ASSERT_EQ(symlink(folder.path().c_str(), (folder / "wanted.json/deeper/all").c_str()), 0);
-  EXPECT_FALSE(take("wanted.json"));
+  EXPECT_FALSE(take_file("wanted.json"));
   EXPECT_FALSE(is_there("wanted.json"));
   EXPECT_TRUE(is_there("secret"));
 }
@@ -84,12 +84,12 @@ TEST_F(UntrustedFolderTest, RenamesADirectoryTooDeepToDelete) {
   getrlimit(RLIMIT_NOFILE, &before);
   const rlimit few{.rlim_cur = 256, .rlim_max = before.rlim_max};
   setrlimit(RLIMIT_NOFILE, &few);
-  const auto taken = take("wanted.json");
+  const auto taken = take_file("wanted.json");
   setrlimit(RLIMIT_NOFILE, &before);
   ASSERT_FALSE(taken);
   EXPECT_FALSE(taken.error().stays);
   EXPECT_FALSE(is_there("wanted.json")) << "the request must be removed, or it repeats";
-  EXPECT_EQ(take("wanted.json").value(), std::nullopt);
+  EXPECT_EQ(take_file("wanted.json").value(), std::nullopt);
 }
 
 TEST_F(UntrustedFolderTest, ReportsANameThatStays) {
@@ -99,7 +99,7 @@ TEST_F(UntrustedFolderTest, ReportsANameThatStays) {
     const int own = geteuid() == 0 ? CLONE_NEWNS : CLONE_NEWUSER | CLONE_NEWNS;
     const bool mounted = unshare(own) == 0 && mount("", "/", "", MS_REC | MS_PRIVATE, "") == 0 &&
                          mount("none", (folder / "wanted.json").c_str(), "tmpfs", 0, "") == 0;
-    const auto taken = take("wanted.json");
+    const auto taken = take_file("wanted.json");
     _exit(!mounted ? 77 : !taken && taken.error().stays && is_there("wanted.json") ? 0 : 1);
   }
   int status = 0;
@@ -113,9 +113,9 @@ TEST_F(UntrustedFolderTest, ReportsANameThatStays) {
 
 TEST_F(UntrustedFolderTest, LimitsTheSizeOfAFile) {
   folder.put("wanted.json", std::string(UntrustedFolder::kLargest, ' '));
-  EXPECT_EQ(take("wanted.json").value()->size(), UntrustedFolder::kLargest);
+  EXPECT_EQ(take_file("wanted.json").value()->size(), UntrustedFolder::kLargest);
   folder.put("wanted.json", std::string(UntrustedFolder::kLargest + 1, ' '));
-  EXPECT_THAT(take("wanted.json").error().why, HasSubstr("large"));
+  EXPECT_THAT(take_file("wanted.json").error().why, HasSubstr("large"));
   EXPECT_FALSE(is_there("wanted.json"));
 }
 

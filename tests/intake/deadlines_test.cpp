@@ -59,7 +59,7 @@ TEST_F(Deadlines, CloseASilentClient) {
   EXPECT_TRUE(is_open());
   pass(1ms);
   EXPECT_TRUE(client.closes());
-  EXPECT_EQ(served.ended(Ended::Slow), 1u);
+  EXPECT_EQ(served.ended(CloseReason::Slow), 1u);
 }
 
 TEST_F(Deadlines, CloseAClientThatDripsItsHeaders) {
@@ -134,7 +134,7 @@ TEST_F(Deadlines, AllowASteadyReader) {
   const auto read = client.read_slowly(800'000, answer.size(), [&] { pass(5s), took += 5s; });
   EXPECT_EQ(read, answer.size());
   EXPECT_GT(took, kHere.idle);
-  EXPECT_EQ(served.ended(Ended::Slow), 0u);
+  EXPECT_EQ(served.ended(CloseReason::Slow), 0u);
 }
 
 TEST_F(Deadlines, CloseAClientThatStopsReading) {
@@ -145,7 +145,7 @@ TEST_F(Deadlines, CloseAClientThatStopsReading) {
   const auto connections = [&] { return served.on_loop([&] { return served.server().connections(); }); };
   for (int halves = 0; halves < 6 && connections() != 0; ++halves) pass(kHere.rate_over / 2);
   EXPECT_EQ(connections(), 0u);
-  EXPECT_EQ(served.ended(Ended::Slow), 1u);
+  EXPECT_EQ(served.ended(CloseReason::Slow), 1u);
 }
 
 TEST_F(Deadlines, PauseWhileTheGatewayHoldsTheBodyBack) {

@@ -198,15 +198,15 @@ TEST(GateWithDrips, ChecksAHeadAfterGrowthOrAWhile) {
   loop::Instant now{};
   const auto come = [&](std::string_view bytes) {
     EXPECT_EQ(::send(client.get(), bytes.data(), bytes.size(), 0), static_cast<ssize_t>(bytes.size()));
-    return gate.look(now, false);
+    return gate.check_bytes(now, false);
   };
   EXPECT_EQ(come("GET /echo HTTP/1.1\r\nHost: adit\r\nX: " + std::string(2000, 'x')), Gate::Finding::Begun);
-  EXPECT_EQ(gate.look(now, false), Gate::Finding::Begun);
+  EXPECT_EQ(gate.check_bytes(now, false), Gate::Finding::Begun);
   int looks = 0;
   for (int i = 0; i < 150; ++i) looks += come("x") == Gate::Finding::Later ? 0 : 1;
   EXPECT_LE(looks, 1);
   EXPECT_EQ(come("\r\n\r\n"), Gate::Finding::Later);
-  EXPECT_EQ(gate.look(now, true), Gate::Finding::Whole) << "the client has ended";
+  EXPECT_EQ(gate.check_bytes(now, true), Gate::Finding::Whole) << "the client has ended";
 }
 
 }  // namespace

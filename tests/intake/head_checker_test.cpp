@@ -10,11 +10,11 @@ namespace {
 using Verdict = HeadChecker::Verdict;
 
 /// Checks `bytes` in pieces of this size.
-Verdict look(HeadChecker& checker, const std::string& bytes, std::size_t piece) {
+Verdict check(HeadChecker& checker, const std::string& bytes, std::size_t piece) {
   Verdict verdict = Verdict::More;
   for (std::size_t size = piece; verdict == Verdict::More; size += piece) {
     const std::string copy = bytes.substr(0, size);  // at a new address each time
-    verdict = checker.look(copy);
+    verdict = checker.check(copy);
     if (size >= bytes.size()) break;
   }
   return verdict;
@@ -26,7 +26,7 @@ TEST(Heads, AreRejectedIfTheRfcForbidsThem) {
     for (const std::size_t piece : {odd.head.size(), std::size_t{1000}, std::size_t{1}}) {
       if (piece == 1 && odd.head.size() > 5000) continue;
       HeadChecker checker;
-      ASSERT_EQ(look(checker, odd.head, piece), Verdict::Refused)
+      ASSERT_EQ(check(checker, odd.head, piece), Verdict::Refused)
           << odd.clause << " " << odd.what << " " << piece;
       EXPECT_EQ(static_cast<int>(checker.refusal().status), odd.status) << odd.what;
       EXPECT_NE(checker.refusal().sentence.find(odd.word), std::string::npos)
@@ -66,7 +66,8 @@ TEST(Heads, AreAcceptedIfTheyAreValid) {
   for (const Plain& plain : rows) {
     for (const std::size_t piece : {plain.head.size(), std::size_t{1}}) {
       HeadChecker checker;
-      EXPECT_EQ(look(checker, plain.head, piece), Verdict::Whole) << plain.head << checker.refusal().sentence;
+      EXPECT_EQ(check(checker, plain.head, piece), Verdict::Whole)
+          << plain.head << checker.refusal().sentence;
       EXPECT_EQ(checker.size(), plain.head.size());
       EXPECT_EQ(checker.framing().has_body, plain.has_body) << plain.head;
       EXPECT_EQ(checker.framing().length, plain.length) << plain.head;
@@ -77,7 +78,7 @@ TEST(Heads, AreAcceptedIfTheyAreValid) {
 TEST(Heads, EndWithTheirBlankLine) {
   const std::string head = "POST /echo HTTP/1.1\r\nHost: adit\r\nContent-Length: 3\r\n\r\n";
   HeadChecker checker;
-  EXPECT_EQ(checker.look(head + "\nGET /"), Verdict::Whole);
+  EXPECT_EQ(checker.check(head + "\nGET /"), Verdict::Whole);
   EXPECT_EQ(checker.size(), head.size());
 }
 
@@ -85,8 +86,8 @@ TEST(Heads, HaveALimitedSize) {
   const std::string begin = "GET /echo HTTP/1.1\r\nHost: adit\r\nX: ";
   const std::string most = begin + std::string(HeadChecker::kMostBytes - begin.size() - 4, 'x') + "\r\n\r\n";
   HeadChecker whole, longer;
-  EXPECT_EQ(whole.look(most), Verdict::Whole);
-  EXPECT_EQ(longer.look("\r\n" + most), Verdict::Refused);
+  EXPECT_EQ(whole.check(most), Verdict::Whole);
+  EXPECT_EQ(longer.check("\r\n" + most), Verdict::Refused);
 }
 
 }  // namespace

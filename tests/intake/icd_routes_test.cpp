@@ -206,13 +206,13 @@ TEST(IcdRoutes, TellOfMessagesWithoutATokenAndOfNoOtherRequests) {
   for (const char* path : {"/map/update", "/api/status"}) team.ask(request("GET", path));
   team.ask(request("OPTIONS", "/map/update"));
   team.ask(request("POST", "/elsewhere", {}, "1"));
-  EXPECT_EQ(team.served.ended(Ended::NoToken), 0u);
+  EXPECT_EQ(team.served.ended(CloseReason::NoToken), 0u);
   team.ask(request("POST", "/map/update", {}, "1"));
   team.ask(request("POST", "/map/update", "Authorization: Basic dGVhbTp4\r\n", "1"));
-  EXPECT_EQ(team.served.ended(Ended::NoToken), 2u);
-  EXPECT_EQ(team.served.ended(Ended::WrongToken), 0u);
+  EXPECT_EQ(team.served.ended(CloseReason::NoToken), 2u);
+  EXPECT_EQ(team.served.ended(CloseReason::WrongToken), 0u);
   team.ask(request("GET", "/api/status", "Authorization: Bearer wrong\r\n"));
-  EXPECT_EQ(team.served.ended(Ended::WrongToken), 1u);
+  EXPECT_EQ(team.served.ended(CloseReason::WrongToken), 1u);
 }
 
 /// Whether a page of another origin can read the answer and its Retry-After.

@@ -14,7 +14,7 @@ std::optional<loop::Duration> too_slow_after(std::uint64_t bytes, loop::Duration
                                              loop::Duration total) {
   LeastRate rate(10s, kStart);
   for (loop::Duration passed{}; passed < total; passed += 100ms) {
-    if (kStart + passed >= rate.look_at() && rate.is_too_slow(kStart + passed)) return passed;
+    if (kStart + passed >= rate.next_check() && rate.is_too_slow(kStart + passed)) return passed;
     if (passed % every == 0ns) rate.count_bytes(bytes);
   }
   return std::nullopt;
@@ -46,9 +46,9 @@ TEST(LeastRate, DetectsAStopAfterAnyAmount) {
 
 TEST(LeastRate, IsCheckedAgainHalfAWindowLater) {
   LeastRate rate(10s, kStart);
-  EXPECT_EQ(rate.look_at(), kStart + 5s);
+  EXPECT_EQ(rate.next_check(), kStart + 5s);
   EXPECT_FALSE(rate.is_too_slow(kStart + 6s)) << "half a window is too short";
-  EXPECT_EQ(rate.look_at(), kStart + 11s);
+  EXPECT_EQ(rate.next_check(), kStart + 11s);
 }
 
 }  // namespace

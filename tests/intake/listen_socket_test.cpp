@@ -63,7 +63,7 @@ TEST(ListenSocket, DoesNotBlockIfItIsAdopted) {
 
 TEST(ListenSocket, CoversItsAddresses) {
   struct Case {
-    Bound bound;
+    ListenAddress bound;
     Listen wanted;
     bool covers;
   };

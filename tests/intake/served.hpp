@@ -19,7 +19,9 @@ class Served {
  public:
   explicit Served(Handler& handler, Listen listen = {}) {
     if (listen.address.empty()) listen.address = "127.0.0.1";
-    listen.on_ended = [this](Ended why, const std::string&) { ++ended_[static_cast<std::size_t>(why)]; };
+    listen.on_ended = [this](CloseReason why, const std::string&) {
+      ++ended_[static_cast<std::size_t>(why)];
+    };
     std::promise<void> started;
     thread_ = std::thread([this, &started, &handler, listen] {
       loop_ = std::make_unique<loop::Loop>();
@@ -78,7 +80,7 @@ class Served {
   }
 
   /// Connections that the server ended for this reason.
-  std::uint64_t ended(Ended why) {
+  std::uint64_t ended(CloseReason why) {
     return on_loop([&] { return ended_[static_cast<std::size_t>(why)]; });
   }
 

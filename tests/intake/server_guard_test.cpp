@@ -53,7 +53,7 @@ class ServerGuardTest : public testing::Test {
 TEST_F(ServerGuardTest, AnswersARequestIfItsHandlerThrows) {
   for (const char* const path : {"/open", "/body", "/end"}) {
     SCOPED_TRACE(path);
-    const auto before = loop::caught_so_far();
+    const auto before = loop::exception_count();
     RawClient client(served.port());
     client.send(request("POST", path, {}, "{}"));
     const auto reply = client.reply();
@@ -61,7 +61,7 @@ TEST_F(ServerGuardTest, AnswersARequestIfItsHandlerThrows) {
     EXPECT_EQ(reply->status, 500);
     EXPECT_NE(reply->body.find("send it again"), std::string::npos) << reply->body;
     EXPECT_TRUE(client.closes());
-    EXPECT_EQ(loop::caught_so_far() - before, 1);
+    EXPECT_EQ(loop::exception_count() - before, 1);
   }
   RawClient client(served.port());
   client.send(request("POST", "/well", {}, "{}"));

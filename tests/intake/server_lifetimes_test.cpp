@@ -25,7 +25,7 @@ TEST_F(ServerLifetimes, ClientResetsBeforeItsAnswer) {
   client.send(request("POST", "/later", {}, "x"));
   ASSERT_TRUE(served.eventually([&] { return handler.responders.size() == 1; }));
   client.reset();
-  EXPECT_TRUE(served.eventually([&] { return handler.responders[0]->client_gone(); }));
+  EXPECT_TRUE(served.eventually([&] { return handler.responders[0]->is_client_gone(); }));
   EXPECT_TRUE(no_connections());
   EXPECT_EQ(handler.gone, 1);
   EXPECT_EQ(handler.exchanges, 0);
@@ -159,7 +159,7 @@ TEST_F(ServerLifetimes, ServerEndsWithARequestInEachPhase) {
     EXPECT_EQ(handler.exchanges, 0);
     EXPECT_EQ(handler.gone, 7);
     for (auto& responder : handler.responders) {
-      EXPECT_TRUE(responder->client_gone());
+      EXPECT_TRUE(responder->is_client_gone());
       responder->answer({.body = "late", .headers = {}});
     }
     for (auto& flow : handler.flows) flow->resume();

@@ -58,7 +58,7 @@ TEST_F(DefaultServerRoom, IsReservedForAuthenticatedClients) {
     ASSERT_TRUE(known.reply()) << i;
   }
   EXPECT_TRUE(served.eventually([&] { return served.server().unauthenticated_connections() <= 32; }));
-  EXPECT_GE(served.ended(Ended::GaveWay), 60u);
+  EXPECT_GE(served.ended(CloseReason::GaveWay), 60u);
   const auto told = held.front()->reply();
   ASSERT_TRUE(told);
   EXPECT_EQ(told->status, 503);
@@ -78,7 +78,7 @@ TEST_F(ServerRoom, IsLimitedForRequestsOfOneAddress) {
   EXPECT_EQ(told->header("retry-after"), "1");
   EXPECT_TRUE(told->body.starts_with("\"too many requests")) << told->body;
   EXPECT_TRUE(more.closes());
-  EXPECT_EQ(served.ended(Ended::NoRoom), 1u);
+  EXPECT_EQ(served.ended(CloseReason::NoRoom), 1u);
   RawClient other(served.port(), "127.0.0.3");
   other.send(request("POST", "/echo", kToken, "1"));
   EXPECT_EQ(other.reply()->status, 200);
@@ -94,7 +94,7 @@ TEST_F(ServerRoom, ComesFromAnIdleConnectionOfTheAddress) {
   EXPECT_TRUE(idle[0]->closes());
   idle[1]->send(request("POST", "/echo", kToken, "1"));
   EXPECT_EQ(idle[1]->reply()->status, 200);
-  EXPECT_EQ(served.ended(Ended::Idle), 1u);
+  EXPECT_EQ(served.ended(CloseReason::Idle), 1u);
 }
 
 TEST_F(ServerRoom, IsNotHeldByDisconnectedClients) {
@@ -116,7 +116,7 @@ TEST_F(ServerRoom, IsSharedByAddressesIfAllAreAuthenticated) {
   RawClient other(served.port(), "127.0.0.4");
   other.send(request("POST", "/echo", {}, "1"));
   ASSERT_EQ(other.reply()->status, 200);
-  EXPECT_EQ(served.ended(Ended::GaveWay), 1u);
+  EXPECT_EQ(served.ended(CloseReason::GaveWay), 1u);
 }
 
 TEST_F(ServerRoom, GoesToTheLatestUnauthenticatedClients) {

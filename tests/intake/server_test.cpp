@@ -167,7 +167,7 @@ TEST_F(ServerTest, AnswersAClientAfterAHalfClose) {
   ASSERT_TRUE(served.eventually([&] { return handler.responders.size() == 1; }));
   std::this_thread::sleep_for(milliseconds(50));
   served.on_loop([&] {
-    EXPECT_FALSE(handler.responders[0]->client_gone());
+    EXPECT_FALSE(handler.responders[0]->is_client_gone());
     handler.responders[0]->answer({.body = "1", .headers = {}});
   });
   EXPECT_EQ(client.reply()->body, "1");

@@ -10,14 +10,14 @@ namespace adit::intake {
 namespace {
 
 using namespace std::chrono_literals;
-using Activity = Held::Activity;
+using Activity = ConnectionInfo::Activity;
 
 constexpr Shares kShares{.unauthenticated = 4, .known = 6, .known_of_address = 3};
 constexpr std::string_view kNew = "new";
 
-std::vector<Held> several(std::uint64_t first, int count, std::string_view address, bool known,
-                          Activity doing) {
-  std::vector<Held> held;
+std::vector<ConnectionInfo> several(std::uint64_t first, int count, std::string_view address, bool known,
+                                    Activity doing) {
+  std::vector<ConnectionInfo> held;
   for (int i = 0; i < count; ++i) {
     const std::uint64_t number = first + static_cast<std::uint64_t>(i);
     held.push_back({.number = number,
@@ -29,8 +29,8 @@ std::vector<Held> several(std::uint64_t first, int count, std::string_view addre
   return held;
 }
 
-std::vector<Held> together(std::initializer_list<std::vector<Held>> parts) {
-  std::vector<Held> held;
+std::vector<ConnectionInfo> together(std::initializer_list<std::vector<ConnectionInfo>> parts) {
+  std::vector<ConnectionInfo> held;
   for (const auto& part : parts) held.insert(held.end(), part.begin(), part.end());
   return held;
 }
@@ -131,16 +131,16 @@ TEST(RoomFor, KeepsTheSharesInAnyOrder) {
   const std::string addresses[] = {"a", "b", "c", "d", "e"};
   constexpr Activity kDoings[] = {Activity::Idle, Activity::Sending, Activity::Left, Activity::Waiting};
   for (int round = 0; round < 200; ++round) {
-    std::vector<Held> held;
+    std::vector<ConnectionInfo> held;
     for (std::uint64_t number = 1; number < 60; ++number) {
-      for (Held& each : held) each.doing = kDoings[any(4)];
-      Held newcomer{.number = number,
-                    .address = addresses[any(5)],
-                    .known = any(2) == 0,
-                    .doing = Activity::Sending,
-                    .since = loop::Instant(std::chrono::seconds(number))};
+      for (ConnectionInfo& each : held) each.doing = kDoings[any(4)];
+      ConnectionInfo newcomer{.number = number,
+                              .address = addresses[any(5)],
+                              .known = any(2) == 0,
+                              .doing = Activity::Sending,
+                              .since = loop::Instant(std::chrono::seconds(number))};
       const auto ends = [&](std::uint64_t gone) {
-        return std::erase_if(held, [&](const Held& each) { return each.number == gone; }) == 1;
+        return std::erase_if(held, [&](const ConnectionInfo& each) { return each.number == gone; }) == 1;
       };
       const Room room = newcomer.known ? room_for(newcomer.address, held, kShares) : Room();
       if (room.gives_way) {
@@ -149,13 +149,14 @@ TEST(RoomFor, KeepsTheSharesInAnyOrder) {
       newcomer.known = newcomer.known && room.is_there;
       held.push_back(newcomer);
       while (const auto gone = unauthenticated_to_close(held, kShares)) ASSERT_TRUE(ends(*gone));
-      const auto known = std::ranges::count(held, true, &Held::known);
+      const auto known = std::ranges::count(held, true, &ConnectionInfo::known);
       ASSERT_LE(held.size() - static_cast<std::size_t>(known), kShares.unauthenticated);
       ASSERT_LE(static_cast<std::size_t>(known), kShares.known);
       for (const std::string& address : addresses)
-        ASSERT_LE(std::ranges::count_if(
-                      held, [&](const Held& each) { return each.known && each.address == address; }),
-                  kShares.known_of_address);
+        ASSERT_LE(
+            std::ranges::count_if(
+                held, [&](const ConnectionInfo& each) { return each.known && each.address == address; }),
+            kShares.known_of_address);
     }
   }
 }

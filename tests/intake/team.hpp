@@ -58,7 +58,7 @@ class FakeMessageHandler final : public MessageHandler {
     senders.push_back(sender);
     responders.push_back(std::move(responder));
   }
-  void left_out(icd::Uri /*uri*/, const Sender& /*sender*/, const std::string& why) override {
+  void record_dropped(icd::Uri /*uri*/, const Sender& /*sender*/, const std::string& why) override {
     left_out_of_reports.push_back(why);
   }
   void on_rejected(icd::Uri uri, const Sender& sender, const icd::Refusal& refusal) override {

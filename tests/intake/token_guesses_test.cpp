@@ -6,16 +6,16 @@ namespace adit::intake {
 namespace {
 
 using namespace std::chrono_literals;
-using Looked = TokenGuesses::Looked;
+using TokenCheck = TokenGuesses::TokenCheck;
 
 constexpr loop::Instant kBegin{100h};
-const TokenGuesses::Verdict kAdmitted{Looked::Right, false}, kUnchecked{Looked::NotLookedAt, true};
+const TokenGuesses::Verdict kAdmitted{TokenCheck::Right, false}, kUnchecked{TokenCheck::NotChecked, true};
 
 class TokenGuessesTest : public testing::Test {
  protected:
   /// A new guess. True if it was checked.
   bool guess(const std::string& address, loop::Instant now) {
-    return guesses_.wrong(address, "guess " + std::to_string(++guessed_), now).looked == Looked::Wrong;
+    return guesses_.wrong(address, "guess " + std::to_string(++guessed_), now).looked == TokenCheck::Wrong;
   }
   void guess_often(const std::string& address, int times, loop::Instant now) {
     for (int i = 0; i < times; ++i) guess(address, now);
@@ -35,7 +35,7 @@ TEST_F(TokenGuessesTest, AreCheckedOnceASecondAfterAFew) {
 TEST_F(TokenGuessesTest, DoNotDelayAnotherAddress) {
   guess_often("10.0.0.9", 10'000, kBegin);
   EXPECT_EQ(guesses_.right("10.0.0.5", kBegin), kAdmitted);
-  EXPECT_EQ(guesses_.wrong("10.0.0.6", "old", kBegin), (TokenGuesses::Verdict{Looked::Wrong, false}));
+  EXPECT_EQ(guesses_.wrong("10.0.0.6", "old", kBegin), (TokenGuesses::Verdict{TokenCheck::Wrong, false}));
 }
 
 TEST_F(TokenGuessesTest, DoNotDelayAnAuthenticatedAddress) {
@@ -58,7 +58,7 @@ TEST_F(TokenGuessesTest, DoNotIncludeARepeatedOldToken) {
   for (int i = 0; i < 1000; ++i) {
     const TokenGuesses::Verdict verdict =
         guesses_.wrong("10.0.0.9", i % 2 == 0 ? "old" : "", kBegin + i * 10ms);
-    EXPECT_EQ(verdict.looked, Looked::Wrong) << i;
+    EXPECT_EQ(verdict.looked, TokenCheck::Wrong) << i;
     EXPECT_EQ(verdict.late, i >= TokenGuesses::kFree && i % 100 != 0) << i;
   }
   EXPECT_EQ(guesses_.right("10.0.0.9", kBegin + 10s), kAdmitted) << "another robot behind the same router";

@@ -46,7 +46,7 @@ TEST_F(TurnstileTest, ChecksAFewTokensAtOnceAndNoMore) {
   ASSERT_EQ(status_of(reply), 429);
   EXPECT_EQ(reply->header("retry-after"), "1");
   EXPECT_EQ(status_of(ask("/echo", kRight, "127.0.1.2")), 200);
-  EXPECT_GT(served_.ended(Ended::WrongToken), static_cast<unsigned>(TokenGuesses::kFree));
+  EXPECT_GT(served_.ended(CloseReason::WrongToken), static_cast<unsigned>(TokenGuesses::kFree));
 }
 
 TEST_F(TurnstileTest, AdmitsAnAuthenticatedAddressAtOnce) {

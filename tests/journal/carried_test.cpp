@@ -33,7 +33,7 @@ icd::Marker marker(const std::string& ns, std::int32_t id, icd::MarkerAction act
   return made;
 }
 
-void tell(Carried& carried, RecordKind kind, const std::string& said = {}) {
+void apply(HandoverState& carried, RecordKind kind, const std::string& said = {}) {
   ASSERT_TRUE(carried.apply(kind, said)) << static_cast<int>(kind);
 }
 
@@ -43,27 +43,27 @@ std::string sent(std::initializer_list<const char*> robots) {
   return store::bytes_of(names);
 }
 
-std::vector<std::string> names_in(const Carried& carried) {
+std::vector<std::string> names_in(const HandoverState& carried) {
   std::vector<std::string> names;
   for (const auto& [name, robot] : carried.robots()) names.push_back(name.text());
   return names;
 }
 
 /// The state that a later process reads from a snapshot.
-Carried again(const Carried& carried) {
-  Carried other;
+HandoverState again(const HandoverState& carried) {
+  HandoverState other;
   carried.write([&](RecordKind kind, std::string_view said) { ASSERT_TRUE(other.apply(kind, said)); });
   return other;
 }
 
 TEST(CarriedState, KeepsPosesUntilDelivered) {
-  Carried carried;
-  tell(carried, RecordKind::Poses, store::bytes_of(state("r1", 1, 10)));
-  tell(carried, RecordKind::Poses, store::bytes_of(state("r2", 2, 11)));
+  HandoverState carried;
+  apply(carried, RecordKind::Poses, store::bytes_of(state("r1", 1, 10)));
+  apply(carried, RecordKind::Poses, store::bytes_of(state("r2", 2, 11)));
   EXPECT_THAT(names_in(carried), ElementsAre("r1", "r2"));
-  tell(carried, RecordKind::StateSent, sent({"r1", "r2"}));
+  apply(carried, RecordKind::StateSent, sent({"r1", "r2"}));
   EXPECT_THAT(names_in(again(carried)), ElementsAre("r1", "r2")) << "the state was not answered";
-  tell(carried, RecordKind::StateDone);
+  apply(carried, RecordKind::StateDone);
   EXPECT_THAT(carried.robots(), IsEmpty()) << "the next process may serve another Command Post";
 }
 
@@ -72,8 +72,8 @@ TEST(CarriedState, KeepsPosesUnchanged) {
   const icd::RobotName name = *icd::RobotName::parse("r1");
   for (const queues::PostedPose& posted :
        {queues::PostedPose{name, pose, 12.25, "10.0.0.5"}, queues::PostedPose{name, pose, {}, ""}}) {
-    Carried carried;
-    tell(carried, RecordKind::Poses, store::bytes_of(std::vector{posted}));
+    HandoverState carried;
+    apply(carried, RecordKind::Poses, store::bytes_of(std::vector{posted}));
     carried = again(carried);
     ASSERT_THAT(carried.robots(), SizeIs(1));
     EXPECT_EQ(carried.robots().begin()->second.posted, posted);
@@ -81,7 +81,7 @@ TEST(CarriedState, KeepsPosesUnchanged) {
 }
 
 TEST(CarriedState, SkipsTruncatedAndNamelessPoses) {
-  Carried carried;
+  HandoverState carried;
   const std::string poses = store::bytes_of(state("r1", 1, 10));
   for (std::size_t size = 0; size < poses.size(); ++size)
     EXPECT_FALSE(carried.apply(RecordKind::Poses, poses.substr(0, size))) << size;
@@ -92,51 +92,52 @@ TEST(CarriedState, SkipsTruncatedAndNamelessPoses) {
 }
 
 TEST(CarriedState, KeepsQueuedPosesIfOthersAreDelivered) {
-  Carried carried;
-  tell(carried, RecordKind::Poses, store::bytes_of(state("r1", 1, 10)));
-  tell(carried, RecordKind::Poses, store::bytes_of(state("r2", 2, 11)));
-  tell(carried, RecordKind::StateSent, sent({"r1"}));
+  HandoverState carried;
+  apply(carried, RecordKind::Poses, store::bytes_of(state("r1", 1, 10)));
+  apply(carried, RecordKind::Poses, store::bytes_of(state("r2", 2, 11)));
+  apply(carried, RecordKind::StateSent, sent({"r1"}));
   carried = again(carried);
-  tell(carried, RecordKind::StateDone);
+  apply(carried, RecordKind::StateDone);
   EXPECT_THAT(names_in(carried), ElementsAre("r2"));
 }
 
 TEST(CarriedState, KeepsPosesReceivedDuringASend) {
-  Carried carried;
-  tell(carried, RecordKind::Poses, store::bytes_of(state("r1", 1, 10)));
-  tell(carried, RecordKind::StateSent, sent({"r1"}));
-  tell(carried, RecordKind::Poses, store::bytes_of(state("r1", 2, 11)));
+  HandoverState carried;
+  apply(carried, RecordKind::Poses, store::bytes_of(state("r1", 1, 10)));
+  apply(carried, RecordKind::StateSent, sent({"r1"}));
+  apply(carried, RecordKind::Poses, store::bytes_of(state("r1", 2, 11)));
   carried = again(carried);
-  tell(carried, RecordKind::StateDone);
+  apply(carried, RecordKind::StateDone);
   ASSERT_THAT(carried.robots(), SizeIs(1));
   EXPECT_EQ(carried.robots().begin()->second.posted.pose.position.x, 2);
 }
 
 TEST(CarriedState, ResendsMessagesInFlightAtARestart) {
-  Carried carried;
-  tell(carried, RecordKind::Poses, store::bytes_of(state("r1", 1, 10)));
-  tell(carried, RecordKind::Markers, store::bytes_of(std::vector{marker("a", 1, icd::MarkerAction::Add, 1)}));
-  tell(carried, RecordKind::StateSent, sent({"r1"}));
-  tell(carried, RecordKind::MarkersSent, names_of(std::vector{marker("a", 1, icd::MarkerAction::Add, 1)}));
-  tell(carried, RecordKind::LifeBegins);
-  tell(carried, RecordKind::StateDone);  // of the next process, in which no state is in flight
-  tell(carried, RecordKind::MarkersDone);
+  HandoverState carried;
+  apply(carried, RecordKind::Poses, store::bytes_of(state("r1", 1, 10)));
+  apply(carried, RecordKind::Markers,
+        store::bytes_of(std::vector{marker("a", 1, icd::MarkerAction::Add, 1)}));
+  apply(carried, RecordKind::StateSent, sent({"r1"}));
+  apply(carried, RecordKind::MarkersSent, names_of(std::vector{marker("a", 1, icd::MarkerAction::Add, 1)}));
+  apply(carried, RecordKind::LifeBegins);
+  apply(carried, RecordKind::StateDone);  // of the next process, in which no state is in flight
+  apply(carried, RecordKind::MarkersDone);
   EXPECT_THAT(carried.robots(), SizeIs(1));
   EXPECT_THAT(carried.markers().markers, SizeIs(1));
 }
 
 TEST(CarriedState, ResendsMessagesWhoseAnswerWasNotRecorded) {
-  Carried carried;
-  tell(carried, RecordKind::Poses, store::bytes_of(state("r1", 1, 10)));
-  tell(carried, RecordKind::Poses, store::bytes_of(state("r2", 1, 10)));
+  HandoverState carried;
+  apply(carried, RecordKind::Poses, store::bytes_of(state("r1", 1, 10)));
+  apply(carried, RecordKind::Poses, store::bytes_of(state("r2", 1, 10)));
   const auto a = marker("a", 1, icd::MarkerAction::Add, 1), b = marker("b", 1, icd::MarkerAction::Add, 1);
-  tell(carried, RecordKind::Markers, store::bytes_of(std::vector{a, b}));
-  tell(carried, RecordKind::StateSent, sent({"r1"}));
-  tell(carried, RecordKind::StateSent, sent({"r2"}));
-  tell(carried, RecordKind::MarkersSent, names_of(std::vector{a}));
-  tell(carried, RecordKind::MarkersSent, names_of(std::vector{b}));
-  tell(carried, RecordKind::StateDone);
-  tell(carried, RecordKind::MarkersDone);
+  apply(carried, RecordKind::Markers, store::bytes_of(std::vector{a, b}));
+  apply(carried, RecordKind::StateSent, sent({"r1"}));
+  apply(carried, RecordKind::StateSent, sent({"r2"}));
+  apply(carried, RecordKind::MarkersSent, names_of(std::vector{a}));
+  apply(carried, RecordKind::MarkersSent, names_of(std::vector{b}));
+  apply(carried, RecordKind::StateDone);
+  apply(carried, RecordKind::MarkersDone);
   EXPECT_THAT(names_in(carried), ElementsAre("r1"));
   EXPECT_THAT(carried.markers().markers, ElementsAre(a));
 }
@@ -157,14 +158,14 @@ TEST(CarriedState, KeepsEachMemberOfAMarker) {
   each.mesh_use_embedded_materials = true;
   icd::Marker unstamped = marker("b", 2, icd::MarkerAction::Delete, 0);
   unstamped.header.stamp.reset();
-  Carried carried;
-  tell(carried, RecordKind::Markers, store::bytes_of(std::vector{each, unstamped}));
+  HandoverState carried;
+  apply(carried, RecordKind::Markers, store::bytes_of(std::vector{each, unstamped}));
   EXPECT_THAT(again(carried).markers().markers, ElementsAre(each, unstamped));
 }
 
 TEST(CarriedState, KeepsClocksPacesAndStamps) {
   using std::chrono::seconds;
-  const pace::Learned learned{
+  const pace::LearnedRate learned{
       .earliest = {.first = pace::Instant(seconds(7)), .last = pace::Instant(seconds(8))},
       .spacing = seconds(3),
       .under_way = true,
@@ -172,16 +173,16 @@ TEST(CarriedState, KeepsClocksPacesAndStamps) {
       .single = 2};
   const queues::Stamper r1{"10.0.0.5", icd::Uri::StateUpdate, "r1"},
       r2{"10.0.0.5", icd::Uri::MapUpdate, "r2"};
-  Carried carried;
+  HandoverState carried;
   EXPECT_FALSE(carried.clock());
-  tell(carried, RecordKind::Clock,
-       store::bytes_of(Clock{.boot = "b1", .at = pace::Instant(seconds(5)), .stamp = 1.5e9}));
-  tell(carried, RecordKind::Senders,
-       store::bytes_of(queues::StampShift::Clocks{{r1, {.theirs = 100, .ours = 1.5e9, .latest = 104}},
-                                                  {r2, {.theirs = 7, .ours = 1.5e9, .latest = 8}}}));
-  tell(carried, RecordKind::Pace, store::bytes_of(icd::Uri::MapUpdate, learned));
-  tell(carried, RecordKind::Stamp, store::bytes_of(icd::Uri::StateUpdate, 1.5e9 + 4));
-  for (const Carried& each : {carried, again(carried)}) {
+  apply(carried, RecordKind::Clock,
+        store::bytes_of(Clock{.boot = "b1", .at = pace::Instant(seconds(5)), .stamp = 1.5e9}));
+  apply(carried, RecordKind::Senders,
+        store::bytes_of(queues::StampShift::Clocks{{r1, {.theirs = 100, .ours = 1.5e9, .latest = 104}},
+                                                   {r2, {.theirs = 7, .ours = 1.5e9, .latest = 8}}}));
+  apply(carried, RecordKind::Pace, store::bytes_of(icd::Uri::MapUpdate, learned));
+  apply(carried, RecordKind::Stamp, store::bytes_of(icd::Uri::StateUpdate, 1.5e9 + 4));
+  for (const HandoverState& each : {carried, again(carried)}) {
     EXPECT_EQ(each.clock()->boot, "b1");
     EXPECT_EQ(each.clock()->at, pace::Instant(seconds(5)));
     EXPECT_EQ(each.clock()->stamp, 1.5e9);
@@ -191,8 +192,8 @@ TEST(CarriedState, KeepsClocksPacesAndStamps) {
     EXPECT_EQ(each.senders().clocks()[0].second.latest_given(), 1.5e9 + 1);
     EXPECT_EQ(each.senders().clocks()[1].second.latest_given(), 1.5e9 + 4);
   }
-  tell(carried, RecordKind::Clock,
-       store::bytes_of(Clock{.boot = "b2", .at = pace::Instant(seconds(1)), .stamp = 1.6e9}));
+  apply(carried, RecordKind::Clock,
+        store::bytes_of(Clock{.boot = "b2", .at = pace::Instant(seconds(1)), .stamp = 1.6e9}));
   EXPECT_THAT(carried.paces(), IsEmpty()) << "times of another boot";
   EXPECT_THAT(carried.senders().clocks(), IsEmpty());
   EXPECT_THAT(carried.stamps(), SizeIs(1));
@@ -203,7 +204,7 @@ TEST(CarriedState, KeepsTheClocksOfStates) {
   std::mt19937_64 random{1};
   std::uniform_real_distribution<double> step{-5000, 5000};
   queues::StampShift live;
-  Carried carried;
+  HandoverState carried;
   std::map<std::string, double> theirs;  // by address
   for (int i = 0; i < 2000; ++i) {
     const std::string address = "10.0.0." + std::to_string(i % 3);
@@ -211,9 +212,9 @@ TEST(CarriedState, KeepsTheClocksOfStates) {
     const double stamp = theirs[address] = std::max(1.0, theirs[address] + step(random) + 1.5);
     const icd::Stamp ours = live.shift({address, icd::Uri::StateUpdate, robot}, stamp, 1.5e9 + i * 0.5);
     if (const auto changed = live.take_changed(); !changed.empty())
-      tell(carried, RecordKind::Senders, store::bytes_of(changed));
+      apply(carried, RecordKind::Senders, store::bytes_of(changed));
     const std::vector<queues::PostedPose> poses{{*icd::RobotName::parse(robot), {}, ours, address}};
-    tell(carried, RecordKind::Poses, store::bytes_of(std::span(poses)));
+    apply(carried, RecordKind::Poses, store::bytes_of(std::span(poses)));
     if (i % 100 == 50) carried = again(carried);
   }
   const auto expected = live.clocks(), found = carried.senders().clocks();
@@ -227,15 +228,15 @@ TEST(CarriedState, KeepsTheClocksOfStates) {
 }
 
 TEST(CarriedState, KnowsWhenRobotsWereHeardUntilTheNextBoot) {
-  Carried carried;
-  tell(carried, RecordKind::Clock, store::bytes_of(Clock{.boot = "b1", .at = {}, .stamp = 1.5e9}));
-  tell(carried, RecordKind::Heard, store::bytes_of(Heard{.robot = "r1", .messages = 1, .last = 10}));
+  HandoverState carried;
+  apply(carried, RecordKind::Clock, store::bytes_of(Clock{.boot = "b1", .at = {}, .stamp = 1.5e9}));
+  apply(carried, RecordKind::Heard, store::bytes_of(Heard{.robot = "r1", .messages = 1, .last = 10}));
   Heard newest{.robot = "r1", .messages = 4, .gap = 1.5, .last = 20};
   newest.kinds[2] = {.accepted = 20, .forwarded = 19};
   newest.behind[2] = 18;
-  tell(carried, RecordKind::Heard, store::bytes_of(newest));
+  apply(carried, RecordKind::Heard, store::bytes_of(newest));
   EXPECT_FALSE(carried.apply(RecordKind::Heard, store::bytes_of(newest).substr(1)));
-  for (const Carried& each : {carried, again(carried)}) {
+  for (const HandoverState& each : {carried, again(carried)}) {
     ASSERT_THAT(each.heard_by_robot(), ElementsAre(Pair("r1", testing::_)));
     const Heard& heard = each.heard_by_robot().at("r1");
     EXPECT_EQ(std::tuple(heard.messages, heard.gap, heard.last), std::tuple(4u, 1.5, 20.0));
@@ -251,10 +252,11 @@ TEST(CarriedState, KnowsWhenRobotsWereHeardUntilTheNextBoot) {
 
 TEST(CarriedState, DropsTimesOfAnotherBoot) {
   using std::chrono::seconds;
-  Carried carried;
-  tell(carried, RecordKind::Clock,
-       store::bytes_of(Clock{.boot = "b1", .at = pace::Instant(seconds(5)), .stamp = 1.5e9}));
-  tell(carried, RecordKind::Pace, store::bytes_of(icd::Uri::MapUpdate, pace::Learned{.spacing = seconds(7)}));
+  HandoverState carried;
+  apply(carried, RecordKind::Clock,
+        store::bytes_of(Clock{.boot = "b1", .at = pace::Instant(seconds(5)), .stamp = 1.5e9}));
+  apply(carried, RecordKind::Pace,
+        store::bytes_of(icd::Uri::MapUpdate, pace::LearnedRate{.spacing = seconds(7)}));
   carried.set_boot("b1");
   EXPECT_TRUE(carried.clock());
   EXPECT_THAT(carried.paces(), SizeIs(1));
@@ -264,7 +266,7 @@ TEST(CarriedState, DropsTimesOfAnotherBoot) {
 }
 
 TEST(CarriedState, SkipsUnknownRecords) {
-  Carried carried;
+  HandoverState carried;
   for (int kind = 0; kind < 256; ++kind) {
     for (const std::string said : {"", "?", "\x01\0\0\0\0\0\0\0"})
       (void)carried.apply(static_cast<RecordKind>(kind), said);
@@ -275,18 +277,18 @@ TEST(CarriedState, SkipsUnknownRecords) {
 }
 
 TEST(CarriedState, KnowsPostedGridAreasOnceRecorded) {
-  Carried carried;
+  HandoverState carried;
   EXPECT_FALSE(carried.grids());
-  tell(carried, RecordKind::Grids);
+  apply(carried, RecordKind::Grids);
   EXPECT_THAT(again(carried).grids(), testing::Optional(IsEmpty()));
   const queues::Extent first{-1, -2, 3, 4}, larger{-1, -2, 30, 4};
-  tell(carried, RecordKind::Grids, store::bytes_of("r1", first));
-  tell(carried, RecordKind::Grids, store::bytes_of("r1", larger));
-  tell(carried, RecordKind::Grids, store::bytes_of("*", queues::Extent::everywhere()));
+  apply(carried, RecordKind::Grids, store::bytes_of("r1", first));
+  apply(carried, RecordKind::Grids, store::bytes_of("r1", larger));
+  apply(carried, RecordKind::Grids, store::bytes_of("*", queues::Extent::infinite()));
   EXPECT_FALSE(carried.apply(RecordKind::Grids, "torn"));
   carried.set_boot("another start");
   EXPECT_THAT(again(carried).grids(), testing::Optional(testing::ElementsAre(
-                                          Pair("*", queues::Extent::everywhere()), Pair("r1", larger))));
+                                          Pair("*", queues::Extent::infinite()), Pair("r1", larger))));
 }
 
 /// After any sequence of calls and with a snapshot at any place, a journal contains the queued messages.
@@ -301,14 +303,14 @@ TEST(CarriedState, KeepsQueuedMessages) {
     return action == icd::MarkerAction::DeleteAll ? marker("", 0, action, x)
                                                   : marker(pick(2) == 0 ? "a" : "b", pick(6), action, x);
   };
-  Carried carried;
+  HandoverState carried;
   std::vector<icd::Marker> waiting, under_way;
   for (int i = 0; i < 4000; ++i) {
     switch (pick(5)) {
       case 0: {  // accepted
         icd::MarkersUpdate update;
         for (int left = pick(4); left >= 0; --left) update.markers.push_back(any(i));
-        tell(carried, RecordKind::Markers, store::bytes_of(update.markers));
+        apply(carried, RecordKind::Markers, store::bytes_of(update.markers));
         waiting = queues::merged(waiting, update.markers);
         break;
       }
@@ -316,16 +318,16 @@ TEST(CarriedState, KeepsQueuedMessages) {
         if (!under_way.empty() || waiting.empty()) break;
         under_way.assign(waiting.begin(), waiting.begin() + 1 + pick(static_cast<int>(waiting.size())));
         waiting.erase(waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(under_way.size()));
-        tell(carried, RecordKind::MarkersSent, names_of(under_way));
+        apply(carried, RecordKind::MarkersSent, names_of(under_way));
         break;
       case 2:
         under_way.clear();
-        tell(carried, RecordKind::MarkersDone);
+        apply(carried, RecordKind::MarkersDone);
         break;
       case 3:
         waiting = queues::merged(under_way, waiting);
         under_way.clear();
-        tell(carried, RecordKind::MarkersBack);
+        apply(carried, RecordKind::MarkersBack);
         break;
       default:
         carried = again(carried);

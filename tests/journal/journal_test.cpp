@@ -47,7 +47,7 @@ class JournalTest : public testing::Test {
     journal->begin({.boot = "b", .at = loop_.now(), .stamp = 1e9});
     return journal;
   }
-  Carried left() const { return left_in(folder_ / "journal"); }
+  HandoverState left() const { return left_in(folder_ / "journal"); }
   std::vector<std::string> files(const std::string& kind) const {
     std::vector<std::string> names;
     for (const auto& file : fs::directory_iterator(folder_ / "journal")) {
@@ -85,7 +85,7 @@ TEST_F(JournalTest, RestoresUndeliveredMessages) {
 /// Commit 937b95d6 wrote the journal.
 TEST(JournalFiles, OfAnEarlierVersionAreRead) {
   using namespace std::chrono_literals;
-  const Carried carried = left_in(project_file("tests/journal/earlier"));
+  const HandoverState carried = left_in(project_file("tests/journal/earlier"));
   ASSERT_TRUE(carried.clock());
   const auto& [boot, at, stamp, step_to, step_by, off, off_since] = *carried.clock();
   EXPECT_EQ(std::tie(boot, at, stamp), std::tuple("b", pace::Instant(1000s), 1e9));
@@ -119,11 +119,11 @@ TEST(JournalFiles, OfAnEarlierVersionAreRead) {
   EXPECT_EQ(senders[0].first, (queues::Stamper{"10.0.0.5", icd::Uri::MapUpdate, "r1"}));
   const auto& [theirs, ours, latest] = senders[0].second;
   EXPECT_EQ(std::tie(theirs, ours, latest), std::tuple(100, 200, 300));
-  const pace::Learned learned{.earliest = {pace::Instant(1001s), {}},
-                              .spacing = 2s,
-                              .under_way = true,
-                              .from_answers = true,
-                              .single = {}};
+  const pace::LearnedRate learned{.earliest = {pace::Instant(1001s), {}},
+                                  .spacing = 2s,
+                                  .under_way = true,
+                                  .from_answers = true,
+                                  .single = {}};
   EXPECT_THAT(carried.paces(), testing::ElementsAre(testing::Pair(icd::Uri::MapUpdate, learned)));
   EXPECT_THAT(carried.stamps(), testing::ElementsAre(testing::Pair(icd::Uri::StateUpdate, 1e9 + 1)));
   EXPECT_THAT(carried.grids(),
@@ -167,7 +167,7 @@ TEST_F(JournalTest, HoldsAllAnsweredMessagesAfterAnyCut) {
     std::ofstream(file, std::ios::binary) << whole.substr(0, cut);
     std::size_t answered = 0;
     while (answered + 1 < sizes.size() && sizes[answered + 1] <= cut) ++answered;
-    const Carried carried = left();
+    const HandoverState carried = left();
     const auto markers = carried.markers().markers;
     ASSERT_EQ(markers.size(), answered) << "cut at " << cut;
     for (std::size_t i = 0; i < markers.size(); ++i) ASSERT_EQ(markers[i].id, static_cast<int>(i) + 1);
@@ -201,7 +201,7 @@ TEST_F(JournalTest, ReportsAMissingRecordAndDistrustsLaterDeliveries) {
       .seekp(static_cast<std::streamoff>(at + 16))
       .put('x');
   Journal journal(loop_, folder_ / "journal");
-  const Carried carried = journal.read();
+  const HandoverState carried = journal.read();
   EXPECT_THAT(journal.damage(), testing::HasSubstr("records of the journal are missing: log-00000001"));
   EXPECT_EQ(carried.markers(), one_marker(1));
   EXPECT_TRUE(carried.robots().empty());

@@ -8,7 +8,7 @@ namespace adit::journal {
 
 /// Reads a journal's directory while the journal is in use: a snapshot may replace a file that is about to
 /// be read.
-inline Carried left_in(const std::string& path) {
+inline HandoverState left_in(const std::string& path) {
   while (true) {
     const auto directory = store::Directory::open(path);
     if (!directory) continue;

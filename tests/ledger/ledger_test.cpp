@@ -61,7 +61,7 @@ struct ToLedger final : dispatch::Output {
   bool write(std::span<const Report> steps, const dispatch::Run* run, Flush flush) override {
     return ledger.write(steps, run, flush).has_value();
   }
-  void tell(dispatch::ClientId, const dispatch::ClientAnswer&, const Report&) override {}
+  void answer_client(dispatch::ClientId, const dispatch::ClientAnswer&, const Report&) override {}
   Ledger& ledger;
 };
 
@@ -72,7 +72,7 @@ TEST(Ledger, RestoresACorrectedReport) {
     ToLedger output(ledger);
     dispatch::Reports reports({.review = dispatch::Review::All, .policy = {}}, output);
     reports.open({}, {}, {});
-    reports.status_heard({.score = 0, .run_clock = 1, .remaining_reports = 20, .current_team = "t"}, {}, {});
+    reports.on_status({.score = 0, .run_clock = 1, .remaining_reports = 20, .current_team = "t"}, {}, {});
     reports.accept({.report = {.type = "Drill", .position = {1, 2, 3}}, .sender = "10.0.0.7"}, 1, true, {});
     ASSERT_TRUE(reports.correct(1, {.type = "Rope", .position = {4, 5, 6}}, {}));
   }

@@ -195,8 +195,8 @@ TEST(LedgerRecord, KeepsMembersAndKindsOfALaterVersion) {
   dispatch::Run heard = full_run();
   heard.heard = 950;
   ASSERT_TRUE(next.apply(kSteps, next.record(std::span(&step, 1), &heard).value()));
-  const dispatch::TakeOver taken{.reports = {{.report = in_state(step, ReportState::InDoubt)}},
-                                 .runs = {heard}};
+  const dispatch::TakeoverChanges taken{.reports = {{.report = in_state(step, ReportState::InDoubt)}},
+                                        .runs = {heard}};
   ASSERT_TRUE(next.apply(kSteps, next.record(taken, Book()).value()));
   next.salvage(20, 2, false);
   next = write_again(next);

@@ -110,7 +110,7 @@ inline void append(const std::string& directory, std::uint8_t kind, std::string_
 inline Result<void> keep_up(Ledger& ledger) {
   const auto work = ledger.upkeep();
   const Result<void> done = work ? work() : Result<void>();
-  if (work) ledger.upkeep_done(done);
+  if (work) ledger.on_upkeep_done(done);
   return done;
 }
 

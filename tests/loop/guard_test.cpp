@@ -24,15 +24,15 @@ class Guard : public testing::Test {
  protected:
   Guard() {
     told.clear();
-    tell_of_caught(
+    set_exception_logger(
         [](const char* where, const char* what) { told += std::string(where) + ": " + what + "\n"; });
   }
-  ~Guard() override { tell_of_caught(nullptr); }
+  ~Guard() override { set_exception_logger(nullptr); }
 
-  std::uint64_t caught() const { return caught_so_far() - before_; }
+  std::uint64_t caught() const { return exception_count() - before_; }
 
  private:
-  std::uint64_t before_ = caught_so_far();
+  std::uint64_t before_ = exception_count();
 };
 
 TEST_F(Guard, CatchesAnyException) {
@@ -47,7 +47,7 @@ TEST_F(Guard, CatchesAnyException) {
 }
 
 TEST_F(Guard, SurvivesALogThatThrows) {
-  tell_of_caught([](const char*, const char*) { throw std::bad_alloc(); });
+  set_exception_logger([](const char*, const char*) { throw std::bad_alloc(); });
   EXPECT_FALSE(run_guarded("a test", [] { throw std::runtime_error("x"); }));
   EXPECT_EQ(caught(), 1);
 }

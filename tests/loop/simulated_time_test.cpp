@@ -18,7 +18,7 @@ TEST(SimulatedTime, AdvancesOnlyByRequest) {
   EXPECT_EQ(loop.now() - began, 90min);
   EXPECT_EQ(loop.wall_now() - of_day, 5400);
   EXPECT_EQ(loop.stamp_now() - stamp, 5400);
-  EXPECT_EQ(loop.look_at_wall(false), 0) << "no clock step: all clocks run at one rate";
+  EXPECT_EQ(loop.check_wall_clock(false), 0) << "no clock step: all clocks run at one rate";
 }
 
 TEST(SimulatedTime, DrivesTimers) {

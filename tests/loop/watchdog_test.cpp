@@ -30,7 +30,7 @@ class WatchdogTest : public testing::Test {
   bool is_fed(int rounds, const std::vector<Workers*>& workers) {
     for (int i = 0; i < rounds; ++i) {
       for (const Workers* each : workers) {
-        if (!turn_until(loop, [each] { return each->are_well(Watchdog::kLongestJob); })) return false;
+        if (!turn_until(loop, [each] { return each->are_responsive(Watchdog::kLongestJob); })) return false;
       }
       if (fed_in(1) != 1) return false;
     }

@@ -50,30 +50,32 @@ class ChangeTest : public testing::Test {
   static constexpr const char* kNew = "192.168.8.11/24";
   const std::string nonce = std::string(32, 'a'), other = std::string(32, 'b');
 
-  void want(const std::string& team = kNew) { change.want({nonce, seconds(90), numbers(team)}, at(0)); }
+  void request_change(const std::string& team = kNew) {
+    change.request_change({nonce, seconds(90), numbers(team)}, at(0));
+  }
   static Instant at(double s) { return Instant(milliseconds(static_cast<std::int64_t>(1e6 + s * 1000))); }
-  void confirm(double s) { change.hear({nonce, Decision::What::Confirm}, at(s)); }
+  void confirm(double s) { change.decide({nonce, Decision::Command::Confirm}, at(s)); }
 
   FakeNumbersSetter hands;
   Change change{hands, numbers()};
 };
 
 TEST_F(ChangeTest, IsAppliedAtOnceAndPendingUntilItsDeadline) {
-  want();
+  request_change();
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24"));
   ASSERT_TRUE(change.status().pending);
   EXPECT_EQ(change.status().pending->until, at(90));
   EXPECT_EQ(change.wake(), at(90));
   EXPECT_EQ(change.status().kept, numbers()) << "unchanged until the confirmation";
-  EXPECT_EQ(change.status().ended, Ended::NotYet);
+  EXPECT_EQ(change.status().ended, ChangeOutcome::NotYet);
 }
 
 TEST_F(ChangeTest, IsStoredOnceConfirmed) {
-  want();
+  request_change();
   confirm(89.999);
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "keep 192.168.8.11/24"));
   EXPECT_FALSE(change.status().pending);
-  EXPECT_EQ(change.status().ended, Ended::Confirmed);
+  EXPECT_EQ(change.status().ended, ChangeOutcome::Confirmed);
   EXPECT_EQ(change.status().kept, numbers(kNew));
   EXPECT_EQ(change.wake(), std::nullopt);
   change.tick(at(1000));
@@ -81,60 +83,60 @@ TEST_F(ChangeTest, IsStoredOnceConfirmed) {
 }
 
 TEST_F(ChangeTest, IsRevertedAtItsDeadline) {
-  want();
+  request_change();
   change.tick(at(89.999));
   EXPECT_TRUE(change.status().pending);
   change.tick(at(90));
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "revert"));
   EXPECT_FALSE(change.status().pending);
-  EXPECT_EQ(change.status().ended, Ended::Reverted);
+  EXPECT_EQ(change.status().ended, ChangeOutcome::Reverted);
   EXPECT_EQ(change.status().why, "the change was not confirmed within 90 s");
   EXPECT_EQ(change.status().kept, numbers());
 }
 
 TEST_F(ChangeTest, RejectsALateConfirmation) {
-  want();
+  request_change();
   change.tick(at(90));
   confirm(90);
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "revert"));
-  EXPECT_EQ(change.status().ended, Ended::Reverted);
+  EXPECT_EQ(change.status().ended, ChangeOutcome::Reverted);
 }
 
 TEST_F(ChangeTest, AcceptsAConfirmationReadLate) {
-  want();
+  request_change();
   confirm(94);
   change.tick(at(94));
-  EXPECT_EQ(change.status().ended, Ended::Confirmed);
+  EXPECT_EQ(change.status().ended, ChangeOutcome::Confirmed);
 }
 
 TEST_F(ChangeTest, IsConfirmedOnlyByItsNonce) {
-  want();
-  change.hear({other, Decision::What::Confirm}, at(1));
-  change.hear({other, Decision::What::Revert}, at(1));
+  request_change();
+  change.decide({other, Decision::Command::Confirm}, at(1));
+  change.decide({other, Decision::Command::Revert}, at(1));
   EXPECT_TRUE(change.status().pending);
   EXPECT_EQ(hands.done.size(), 1u);
 }
 
 TEST_F(ChangeTest, IsRevertedOnRequest) {
-  want();
-  change.hear({nonce, Decision::What::Revert}, at(1));
+  request_change();
+  change.decide({nonce, Decision::Command::Revert}, at(1));
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "revert"));
-  EXPECT_EQ(change.status().ended, Ended::Reverted);
+  EXPECT_EQ(change.status().ended, ChangeOutcome::Reverted);
   EXPECT_EQ(change.status().ended_nonce, nonce);
 }
 
 TEST_F(ChangeTest, IsRevertedAtAStop) {
   change.stop(at(0));
   EXPECT_THAT(hands.done, IsEmpty());
-  want();
+  request_change();
   change.stop(at(1));
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "revert"));
-  EXPECT_EQ(change.status().ended, Ended::Reverted);
+  EXPECT_EQ(change.status().ended, ChangeOutcome::Reverted);
 }
 
 TEST_F(ChangeTest, RetriesARevertAtAStop) {
   hands.fail_revert = 1;
-  want();
+  request_change();
   change.tick(at(90));
   change.stop(at(91));
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "revert", "revert"));
@@ -143,7 +145,7 @@ TEST_F(ChangeTest, RetriesARevertAtAStop) {
 
 TEST_F(ChangeTest, IsRevertedAtOnceIfItCannotBeApplied) {
   hands.fail_apply = true;
-  want();
+  request_change();
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "revert"));
   EXPECT_FALSE(change.status().pending);
   EXPECT_EQ(change.status().why, "the change could not be applied: the disk is full");
@@ -151,17 +153,17 @@ TEST_F(ChangeTest, IsRevertedAtOnceIfItCannotBeApplied) {
 
 TEST_F(ChangeTest, IsRevertedIfItCannotBeStored) {
   hands.fail_keep = true;
-  want();
+  request_change();
   confirm(1);
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "keep 192.168.8.11/24", "revert"));
-  EXPECT_EQ(change.status().ended, Ended::Reverted);
+  EXPECT_EQ(change.status().ended, ChangeOutcome::Reverted);
   EXPECT_EQ(change.status().kept, numbers());
   EXPECT_THAT(change.status().why, HasSubstr("could not be stored: the disk is full"));
 }
 
 TEST_F(ChangeTest, RetriesARevertUntilItSucceeds) {
   hands.fail_revert = 2;
-  want();
+  request_change();
   change.tick(at(90));
   EXPECT_TRUE(change.status().pending) << "the change is still in use";
   EXPECT_EQ(change.wake(), at(92));
@@ -170,13 +172,13 @@ TEST_F(ChangeTest, RetriesARevertUntilItSucceeds) {
   change.tick(at(92));
   change.tick(at(94));
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "revert", "revert", "revert"));
-  EXPECT_EQ(change.status().ended, Ended::Reverted);
+  EXPECT_EQ(change.status().ended, ChangeOutcome::Reverted);
   EXPECT_EQ(change.wake(), std::nullopt);
 }
 
 TEST_F(ChangeTest, IsGivenUpIfItCannotBeReverted) {
   hands.fail_revert = 99;
-  want();
+  request_change();
   for (double s = 90; s < 200; s += 1) change.tick(at(s));
   EXPECT_EQ(hands.done.size(), 1u + Change::kTries);
   EXPECT_FALSE(change.status().pending);
@@ -184,24 +186,24 @@ TEST_F(ChangeTest, IsGivenUpIfItCannotBeReverted) {
 }
 
 TEST_F(ChangeTest, IsNotReplacedWhilePending) {
-  want();
-  change.want({other, seconds(90), numbers("192.168.9.11/24")}, at(10));
+  request_change();
+  change.request_change({other, seconds(90), numbers("192.168.9.11/24")}, at(10));
   EXPECT_EQ(hands.done.size(), 1u);
   EXPECT_EQ(change.status().pending->nonce, nonce);
   EXPECT_EQ(change.wake(), at(90)) << "the trial must not last longer";
 }
 
 TEST_F(ChangeTest, ToTheSameAddressTouchesNothing) {
-  want("192.168.7.11/24");
+  request_change("192.168.7.11/24");
   EXPECT_THAT(hands.done, IsEmpty());
-  EXPECT_EQ(change.status().ended, Ended::Confirmed);
+  EXPECT_EQ(change.status().ended, ChangeOutcome::Confirmed);
   EXPECT_EQ(change.status().ended_nonce, nonce);
 }
 
 TEST_F(ChangeTest, MayFollowAnother) {
-  want();
+  request_change();
   confirm(1);
-  change.want({other, seconds(10), numbers("192.168.9.11/24")}, at(5));
+  change.request_change({other, seconds(10), numbers("192.168.9.11/24")}, at(5));
   change.tick(at(15));
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "keep 192.168.8.11/24",
                                       "apply 192.168.9.11/24", "revert"));
@@ -212,9 +214,9 @@ TEST(FirstChange, IsRevertedToNothing) {
   FakeNumbersSetter hands;
   Change change(hands, std::nullopt);
   change.on_interrupted();
-  EXPECT_EQ(change.status().ended, Ended::Reverted);
+  EXPECT_EQ(change.status().ended, ChangeOutcome::Reverted);
   const Instant now{};
-  change.want({std::string(32, 'c'), seconds(1), numbers()}, now);
+  change.request_change({std::string(32, 'c'), seconds(1), numbers()}, now);
   EXPECT_EQ(change.status().kept, std::nullopt);
   change.tick(now + seconds(1));
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.7.11/24", "revert"));
@@ -222,11 +224,11 @@ TEST(FirstChange, IsRevertedToNothing) {
 
 TEST_F(ChangeTest, IsForgottenWithConfirmedAddresses) {
   change.set_endpoints({{1, 2}});
-  want();
+  request_change();
   EXPECT_TRUE(change.forget(at(1)));
   EXPECT_FALSE(change.status().pending);
   EXPECT_EQ(change.wake(), std::nullopt);
-  EXPECT_EQ(change.status().ended, Ended::Reverted);
+  EXPECT_EQ(change.status().ended, ChangeOutcome::Reverted);
   EXPECT_EQ(change.status().why, "a factory reset forgot all addresses");
   EXPECT_EQ(change.status().kept, numbers("10.0.0.1/24"));
   EXPECT_EQ(change.status().endpoints, Endpoints{});
@@ -235,7 +237,7 @@ TEST_F(ChangeTest, IsForgottenWithConfirmedAddresses) {
 
 TEST_F(ChangeTest, IsRevertedIfForgettingFails) {
   hands.fail_keep = true;
-  want();
+  request_change();
   EXPECT_EQ(change.forget(at(1)).error(), "the disk is full");
   EXPECT_EQ(change.status().why, "a factory reset forgets all addresses")
       << "a confirmation is no longer possible";
@@ -264,16 +266,16 @@ TEST(Changes, LeaveNoUnconfirmedAddressInUse) {
       const bool is_open = before && change.wake() == before->until;  // and is not being reverted
       switch (draw(4)) {
         case 0:
-          change.want({nonce, seconds(1), numbers(team)}, now);
+          change.request_change({nonce, seconds(1), numbers(team)}, now);
           break;
         case 1:
-          change.hear({nonce, Decision::What::Confirm}, now);
+          change.decide({nonce, Decision::Command::Confirm}, now);
           if (is_open && before->nonce == nonce && !hands.fail_keep) {
             confirmed = host_text(before->wanted.team);
           }
           break;
         case 2:
-          change.hear({nonce, Decision::What::Revert}, now);
+          change.decide({nonce, Decision::Command::Revert}, now);
           break;
         default:
           change.tick(now);

@@ -15,13 +15,13 @@ using testing::HasSubstr;
 const std::string kNonce = "0123456789abcdef0123456789abcdef";
 
 TEST(NetworkMessages, ReadBackTheSame) {
-  const auto wanted = codec::read_file<Wanted>(
-      codec::write_file(Wanted{kNonce, std::chrono::milliseconds(90000), numbers()}));
+  const auto wanted = codec::read_file<ChangeRequest>(
+      codec::write_file(ChangeRequest{kNonce, std::chrono::milliseconds(90000), numbers()}));
   ASSERT_TRUE(wanted) << wanted.error();
   EXPECT_EQ(wanted->nonce, kNonce);
   EXPECT_EQ(wanted->confirm_within.count(), 90000);
   EXPECT_EQ(wanted->numbers, numbers());
-  for (const auto what : {Decision::What::Confirm, Decision::What::Revert}) {
+  for (const auto what : {Decision::Command::Confirm, Decision::Command::Revert}) {
     const auto word = codec::read_file<Decision>(codec::write_file(Decision{kNonce, what}));
     ASSERT_TRUE(word);
     EXPECT_EQ(word->what, what);
@@ -29,12 +29,12 @@ TEST(NetworkMessages, ReadBackTheSame) {
   ASSERT_TRUE(codec::read_file<Probe>(codec::write_file(Probe{kNonce})));
   EXPECT_EQ(codec::read_file<Probe>(codec::write_file(Probe{kNonce, "10.100.1.200"}))->sought,
             "10.100.1.200");
-  EXPECT_EQ(codec::read_file<Forget>(codec::write_file(Forget{kNonce}))->nonce, kNonce);
+  EXPECT_EQ(codec::read_file<FactoryRequest>(codec::write_file(FactoryRequest{kNonce}))->nonce, kNonce);
   for (const Endpoints& each : {Endpoints{}, Endpoints{{0x0a6401c8, 0x0a6401c9}}}) {
     EXPECT_EQ(codec::read_file<Endpoints>(codec::write_file(each)), each);
   }
-  const auto probed = codec::read_file<Probed>(
-      codec::write_file(Probed{kNonce, "10.100.1.10", "02:00:00:00:00:01", "team0", "darpa0", "none"}));
+  const auto probed = codec::read_file<ProbeResult>(
+      codec::write_file(ProbeResult{kNonce, "10.100.1.10", "02:00:00:00:00:01", "team0", "darpa0", "none"}));
   ASSERT_TRUE(probed);
   EXPECT_EQ(probed->claimant, "02:00:00:00:00:01");
   EXPECT_EQ(probed->found_on, "darpa0");
@@ -50,7 +50,7 @@ TEST(NetworkMessages, HaveTheWholeStatus) {
   status.endpoints = {{0x0a6401c8}};
   status.pending = Pending{kNonce, numbers("10.0.0.1/8"), Instant(std::chrono::milliseconds(123456)),
                            std::chrono::seconds(5)};
-  status.ended = Ended::Reverted;
+  status.ended = ChangeOutcome::Reverted;
   status.ended_nonce = kNonce;
   status.why = "the change was not confirmed";
   status.trouble = "networkctl reload: exit status 1";
@@ -110,7 +110,7 @@ TEST(NetworkMessages, RejectTimesBeyondTheClock) {
 /// Messages that a compromised gateway could write.
 TEST(NetworkMessages, AreRejectedIfHostile) {
   const json good =
-      json::parse(codec::write_file(Wanted{kNonce, std::chrono::milliseconds(90000), numbers()}));
+      json::parse(codec::write_file(ChangeRequest{kNonce, std::chrono::milliseconds(90000), numbers()}));
   const std::pair<const char*, const char*> cases[] = {
       {R"({"nonce":"0123"})", "nonce: expected 32 hexadecimal digits"},
       {R"({"confirm_within_ms":999})", "confirm_within_ms"},
@@ -125,23 +125,23 @@ TEST(NetworkMessages, AreRejectedIfHostile) {
   for (const auto& [change, what] : cases) {
     json bad = good;
     bad.update(json::parse(change));
-    const auto result = codec::read_file<Wanted>(bad.dump());
+    const auto result = codec::read_file<ChangeRequest>(bad.dump());
     ASSERT_FALSE(result) << change;
     EXPECT_THAT(result.error(), HasSubstr(what));
   }
   for (const char* text : {"", "{", "[]", "null", "7", "{\"format\":1}", "\xff\xfe"}) {
-    EXPECT_FALSE(codec::read_file<Wanted>(text)) << text;
+    EXPECT_FALSE(codec::read_file<ChangeRequest>(text)) << text;
     EXPECT_FALSE(codec::read_file<Decision>(text)) << text;
     EXPECT_FALSE(codec::read_file<Probe>(text)) << text;
     EXPECT_FALSE(codec::read_file<Endpoints>(text)) << text;
-    EXPECT_FALSE(codec::read_file<Forget>(text)) << text;
+    EXPECT_FALSE(codec::read_file<FactoryRequest>(text)) << text;
     EXPECT_FALSE(codec::read_file<Status>(text)) << text;
-    EXPECT_FALSE(codec::read_file<Probed>(text)) << text;
+    EXPECT_FALSE(codec::read_file<ProbeResult>(text)) << text;
     EXPECT_FALSE(read_kept(text)) << text;
   }
   EXPECT_FALSE(codec::read_file<Decision>(R"({"format":1,"nonce":")" + kNonce + R"(","word":"maybe"})"));
   EXPECT_FALSE(codec::read_file<Decision>(R"({"format":1,"nonce":"x","word":"revert"})"));
-  EXPECT_FALSE(codec::read_file<Forget>(R"({"format":1,"nonce":"x"})"));
+  EXPECT_FALSE(codec::read_file<FactoryRequest>(R"({"format":1,"nonce":"x"})"));
   EXPECT_FALSE(codec::read_file<Probe>(R"({"format":1,"nonce":")" + kNonce + R"(","sought":"adit.local"})"));
 }
 

@@ -49,7 +49,7 @@ TEST(RateLimit, After429CountsFromTheAnswer) {
   EXPECT_EQ(limit.earliest(), (Span{.first = at(12.7), .last = at(12.7)}));
   EXPECT_TRUE(limit.learned_rate().from_answers);
   RateLimit next{1};
-  next.carry_on(limit.learned_rate(), at(12));
+  next.restore(limit.learned_rate(), at(12));
   EXPECT_TRUE(next.learned_rate().from_answers);
   EXPECT_EQ(next.earliest(), limit.earliest());
 }
@@ -81,17 +81,17 @@ TEST(RateLimit, ContinuesWithLearnedValues) {
   ASSERT_LT(hertz(slowed, 1), 0.9);
   slowed.on_throttled(at(40), std::chrono::seconds(20));
   RateLimit next(1);
-  next.carry_on(slowed.learned_rate(), at(41));
+  next.restore(slowed.learned_rate(), at(41));
   EXPECT_EQ(next.next(), slowed.next());
   EXPECT_GE(next.next(), at(60)) << "including the server's Retry-After";
   EXPECT_EQ(next.learned_rate().spacing, slowed.learned_rate().spacing);
   RateLimit slower(0.01);
-  slower.carry_on(slowed.learned_rate(), at(41));
+  slower.restore(slowed.learned_rate(), at(41));
   EXPECT_EQ(hertz(slower, 0.01), 0.01) << "never more than the settings allow";
   RateLimit free(1), freed(5);
   free.on_sent(at(3));
   free.on_answered(left(3), at(3));
-  freed.carry_on(free.learned_rate(), at(3));
+  freed.restore(free.learned_rate(), at(3));
   EXPECT_EQ(freed.next(), at(4) + milliseconds{20});
   EXPECT_EQ(hertz(freed, 5), 5) << "without a learned rate the new settings apply";
 }
@@ -101,18 +101,18 @@ TEST(RateLimit, KeepsItsSpacingAfterARestartDuringARequest) {
   RateLimit before(1);
   before.on_sent(at(3));  // and it took five seconds
   RateLimit next(1);
-  next.carry_on(before.learned_rate(), at(8.3));
+  next.restore(before.learned_rate(), at(8.3));
   EXPECT_EQ(next.next(), at(9.3));
   before.on_answered(left(8), at(8));
   RateLimit known(1);
-  known.carry_on(before.learned_rate(), at(8.3));
+  known.restore(before.learned_rate(), at(8.3));
   EXPECT_EQ(known.next(), at(9) + milliseconds{20}) << "the end of the request is known";
 }
 
 TEST(RateLimit, SurvivesTimesOfAnotherClock) {
   for (const double hertz : {1.0, 0.01}) {
     RateLimit next(hertz);
-    next.carry_on({.earliest = {.first = at(1e6), .last = at(1e6)}}, at(5));
+    next.restore({.earliest = {.first = at(1e6), .last = at(1e6)}}, at(5));
     EXPECT_LE(next.next(), at(5 + std::max(30.0, 1 / hertz))) << hertz;
   }
 }
@@ -148,8 +148,8 @@ TEST(RateLimit, KeepsRequestsApartForAnyAnswers) {
       if (answer >= 0.2 && answer < 0.4) limit.on_lost(now);
       if (answer >= 0.4) limit.on_answered(sent, now);
       if (answer > 0.98) {  // a process ends, and the next begins
-        const Learned learned = std::exchange(limit, RateLimit{allowed}).learned_rate();
-        limit.carry_on(learned, now);
+        const LearnedRate learned = std::exchange(limit, RateLimit{allowed}).learned_rate();
+        limit.restore(learned, now);
       }
       ASSERT_GE(hertz(limit, allowed), std::min(allowed, RateLimit::kSlowest) - 1e-9);
     }

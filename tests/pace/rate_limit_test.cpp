@@ -171,7 +171,7 @@ Counts learns_of_answers(double lives) {
     if (now > next_life) {
       next_life += lives;
       RateLimit next{1};
-      next.carry_on(limit.learned_rate(), at(now));
+      next.restore(limit.learned_rate(), at(now));
       limit = next;
     }
     limit.on_sent(at(now));
@@ -214,14 +214,14 @@ TEST(RateLimit, NewRateKeepsARequestedPause) {
 
 TEST(RateLimit, NewRateBoundsAPauseFromBeforeARestart) {
   RateLimit rate(0.001);
-  rate.carry_on({.earliest = {.first = at(900), .last = at(900)}}, at(0));
+  rate.restore({.earliest = {.first = at(900), .last = at(900)}}, at(0));
   rate.allow(1, at(5));
   EXPECT_EQ(rate.next(), at(5) + RateLimit::kLongestPause);
 }
 
 TEST(RateLimit, NewRateKeepsLearnedValues) {
   RateLimit rate(10);
-  rate.carry_on({.spacing = std::chrono::seconds{2}}, at(0));
+  rate.restore({.spacing = std::chrono::seconds{2}}, at(0));
   rate.allow(5, at(0));
   EXPECT_DOUBLE_EQ(hertz(rate, 5), 0.5);
   rate.allow(0.1, at(0));
@@ -315,13 +315,13 @@ TEST(RateLimit, OnlyAShortStormShowsALimit) {
 
 TEST(RateLimit, NothingGoesAheadWhileTheRateIsLearned) {
   RateLimit rate(1);
-  EXPECT_TRUE(rate.may_go_ahead());
+  EXPECT_TRUE(rate.can_pipeline());
   rate.on_sent(at(0));
   rate.on_throttled(at(0.1), {});
-  EXPECT_FALSE(rate.may_go_ahead());
+  EXPECT_FALSE(rate.can_pipeline());
   rate.on_sent(at(2));
   rate.on_answered({.first = at(2), .last = at(2)}, at(2.1));
-  EXPECT_FALSE(rate.may_go_ahead()) << "the server may count from its answers";
+  EXPECT_FALSE(rate.can_pipeline()) << "the server may count from its answers";
 }
 
 TEST(RateLimit, ForeignRequestTakesItsOwnTurn) {
@@ -348,7 +348,7 @@ TEST(RateLimit, ForeignRequestTeachesNothing) {
   EXPECT_GT(*claimed, next) << "a claim also keeps the pause";
   rate.on_claimed(*claimed + std::chrono::milliseconds{100});
   EXPECT_GE(rate.next(), *claimed + std::chrono::milliseconds{1100}) << "this server counts from its answers";
-  EXPECT_FALSE(rate.may_go_ahead()) << "the storm continues";
+  EXPECT_FALSE(rate.can_pipeline()) << "the storm continues";
   EXPECT_FALSE(rate.learned_rate().under_way);
 }
 

@@ -26,7 +26,7 @@ class EffortFor : public testing::TestWithParam<Row> {};
 
 TEST_P(EffortFor, ACloudDelaysOthersLeastAndArrivesFirst) {
   const Row& row = GetParam();
-  const Hurry hurry{row.megabytes_a_second * kMegabyte, row.slowness, kSlot};
+  const EffortInput hurry{row.megabytes_a_second * kMegabyte, row.slowness, kSlot};
   EXPECT_EQ(effort_for(static_cast<std::size_t>(row.megabytes * kMegabyte), row.quick_to, hurry),
             row.expected);
 }
@@ -75,7 +75,7 @@ TEST(Effort, IsNeverWorseThanFull) {
   for (const double slowness : {0.2, 1.0, 5.0, 20.0}) {
     for (const double rate : rates()) {
       for (const double quick_to : {0.01, 0.3, 0.6, 0.9, 1.0}) {
-        const Hurry hurry{rate, slowness, kSlot};
+        const EffortInput hurry{rate, slowness, kSlot};
         const double bytes = 3e6;
         const auto packs = [&](Effort effort) {
           return slowness * kSecondsPerByte[static_cast<std::size_t>(effort)] * bytes;
@@ -116,7 +116,7 @@ TEST(Effort, IsMeasuredOnTheCloud) {
     return std::array{make.real(0, 1), make.real(0, 1), make.real(0, 1)};
   };
   icd::MapUpdate alike = update_of(padded, Bytes(64 * 50'000)), plain = make.cloud(icd::xyz(), 50'000, noise);
-  const Hurry hurry{60 * kMegabyte, 1, kSlot};
+  const EffortInput hurry{60 * kMegabyte, 1, kSlot};
   EXPECT_EQ(effort_for(alike, hurry).effort, Effort::Quick);
   EXPECT_EQ(effort_for(plain, hurry).effort, Effort::None);
   EXPECT_EQ(effort_for(alike, {}).effort, Effort::Full) << "the link is slow";
@@ -142,7 +142,7 @@ TEST(Effort, IsNoneBeyondTheLimit) {
 struct GridRow {
   const char* what;
   double megacells, kept_megabytes;
-  Hurry hurry;
+  EffortInput hurry;
   Effort expected;
 };
 

@@ -25,8 +25,8 @@ inline ReadBack read_back(const icd::MapUpdate& map) {
   EXPECT_TRUE(document);
   rehearsal::Findings findings;
   auto message = rehearsal::read_map(document->value, rehearsal::Format::CborBytes, findings);
-  EXPECT_EQ(findings.decisive(rehearsal::Manner::Strict), nullptr);
-  EXPECT_EQ(findings.decisive(rehearsal::Manner::AsMeasured), nullptr);
+  EXPECT_EQ(findings.first_rejected(rehearsal::Manner::Strict), nullptr);
+  EXPECT_EQ(findings.first_rejected(rehearsal::Manner::AsMeasured), nullptr);
   EXPECT_TRUE(message);
   if (!message) return {};
   return {std::get<rehearsal::Cloud>(message->msg), std::move(message->data)};

@@ -37,14 +37,14 @@ class KeeperTest : public testing::Test {
     ASSERT_TRUE(listening);
     keeper_.emplace(
         loop_, std::move(listening), settings::Panel{},
-        Keeper::World{.open =
-                          [this](const settings::Panel&) {
-                            return Held{std::make_unique<WatchedLines>(seen_),
-                                        std::make_unique<WireLine>(wire_)};
-                          },
-                      .complain = [this](const std::string& sentence) { log_.push_back(sentence); }});
+        Keeper::Callbacks{.open =
+                              [this](const settings::Panel&) {
+                                return PanelDevices{std::make_unique<WatchedLines>(seen_),
+                                                    std::make_unique<WireLine>(wire_)};
+                              },
+                          .complain = [this](const std::string& sentence) { log_.push_back(sentence); }});
   }
-  Held connect() {
+  PanelDevices connect() {
     auto held = remote(socket(), {});
     EXPECT_TRUE(held.has_value());
     EXPECT_TRUE(held->lines->set(kTold).has_value());
@@ -72,7 +72,7 @@ class KeeperTest : public testing::Test {
 
 TEST_F(KeeperTest, ReportsFailureAndRecoveryOfTheLights) {
   begin();
-  const Held held = connect();
+  const PanelDevices held = connect();
   seen_.fail = true;
   std::expected<void, std::string> set;
   const auto is_told = [&](bool well) {
@@ -92,7 +92,7 @@ TEST_F(KeeperTest, ReportsFailureAndRecoveryOfTheLights) {
 
 TEST_F(KeeperTest, ReportsAPress) {
   begin();
-  const Held held = connect();
+  const PanelDevices held = connect();
   EXPECT_EQ(held.button->is_pressed(), false);
   set(true);
   EXPECT_EQ(held.button->is_pressed(), true);
@@ -102,7 +102,7 @@ TEST_F(KeeperTest, ReportsAPress) {
 
 TEST_F(KeeperTest, LostButtonCancelsAPress) {
   begin();
-  const Held held = connect();
+  const PanelDevices held = connect();
   set(true);
   EXPECT_EQ(held.button->is_pressed(), true);
   wire_.broken = true;
@@ -117,7 +117,7 @@ TEST_F(KeeperTest, LostButtonCancelsAPress) {
 
 TEST_F(KeeperTest, SilentlyLostButtonIsNoticedAtTheNextBeat) {
   begin();
-  const Held held = connect();
+  const PanelDevices held = connect();
   set(true);
   EXPECT_EQ(held.button->is_pressed(), true);
   wire_.broken = true;
@@ -127,7 +127,7 @@ TEST_F(KeeperTest, SilentlyLostButtonIsNoticedAtTheNextBeat) {
 
 TEST_F(KeeperTest, ReturnedButtonNeedsARelease) {
   begin();
-  const Held held = connect();
+  const PanelDevices held = connect();
   wire_.broken = true;
   set(false);
   EXPECT_FALSE(held.button->is_pressed().has_value());
@@ -143,13 +143,13 @@ TEST_F(KeeperTest, ReturnedButtonNeedsARelease) {
 TEST_F(KeeperTest, NewClientIsToldOfALostButton) {
   wire_.broken = true;
   begin();
-  const Held held = connect();
+  const PanelDevices held = connect();
   EXPECT_FALSE(held.button->is_pressed().has_value());
 }
 
 TEST_F(KeeperTest, EndOfAditPanelCancelsAPress) {
   begin();
-  const Held held = connect();
+  const PanelDevices held = connect();
   set(true);
   EXPECT_EQ(held.button->is_pressed(), true);
   keeper_.reset();

@@ -74,7 +74,7 @@ class ReopenedChip : public testing::Test {
     return poll(&wanted, 1, 30'000) == 1;
   }
   /// Reads the button only when its descriptor is readable, as its user does.
-  static std::expected<bool, std::string> look(ButtonLine& button) {
+  static std::expected<bool, std::string> read_level(ButtonLine& button) {
     EXPECT_TRUE(is_readable_soon(button));
     return button.is_pressed();
   }
@@ -135,13 +135,13 @@ TEST_F(ReopenedChip, LostButtonIsNoticedUntouchedAndReopened) {
   EXPECT_EQ(held->is_pressed(), false);
   const int descriptor = held->descriptor();
   vanish();
-  EXPECT_EQ(look(*held).error(), "panel: line BUTTON (button) of chip gpiochip0: No such device");
-  EXPECT_EQ(look(*held).error(), "panel: chip gpiochip0: No such file or directory");
+  EXPECT_EQ(read_level(*held).error(), "panel: line BUTTON (button) of chip gpiochip0: No such device");
+  EXPECT_EQ(read_level(*held).error(), "panel: chip gpiochip0: No such file or directory");
   come();
-  EXPECT_EQ(look(*held), false);
+  EXPECT_EQ(read_level(*held), false);
   line("BUTTON").level = false;
   eventfd_write(edges_.get(), 1);
-  EXPECT_EQ(look(*held), true);
+  EXPECT_EQ(read_level(*held), true);
   EXPECT_EQ(held->descriptor(), descriptor);
 }
 
@@ -153,20 +153,20 @@ TEST_F(ReopenedChip, BrieflyLostButtonCountsAsLost) {
   EXPECT_FALSE(held->is_pressed().has_value());
   line("BUTTON").fails_with = 0;
   EXPECT_FALSE(held->is_pressed().has_value()) << "the button is opened again too early";
-  EXPECT_EQ(look(*held), true);
+  EXPECT_EQ(read_level(*held), true);
 }
 
 TEST_F(ReopenedChip, ButtonOfALateChipIsOpened) {
   vanish();
   const auto held = button();
-  EXPECT_EQ(look(*held).error(), "panel: chip gpiochip0: No such file or directory");
+  EXPECT_EQ(read_level(*held).error(), "panel: chip gpiochip0: No such file or directory");
   come();
-  EXPECT_EQ(look(*held), false);
+  EXPECT_EQ(read_level(*held), false);
 }
 
 TEST_F(ReopenedChip, NamedLinesOfALateChipAreHeld) {
   vanish();
-  const Held held = hold(settings_, "adit-panel", "", [](const std::string& why) { FAIL() << why; });
+  const PanelDevices held = hold(settings_, "adit-panel", "", [](const std::string& why) { FAIL() << why; });
   EXPECT_EQ(held.lines->set(kWell).error(), "panel: chip gpiochip0: No such file or directory");
   EXPECT_FALSE(held.button->is_pressed().has_value());
   settings_.button = "";

@@ -23,29 +23,29 @@ class WatchedTest : public testing::Test {
     return lit == 10;
   }
 
-  Watched watched{kItBegan};
+  HeartbeatMonitor watched{kItBegan};
 };
 
 TEST_F(WatchedTest, IsDarkUntilTheFirstMessage) {
   EXPECT_EQ(watched.frame(kItBegan + 40s).lit, kNoneLit);
-  watched.on_came(kItBegan + 40s);
+  watched.on_contact(kItBegan + 40s);
   EXPECT_EQ(watched.frame(kItBegan + 80s).lit, kNoneLit) << "counted from the start of aditd";
   watched.on_lights(kAllWell, kItBegan + 81s);
   EXPECT_EQ(watched.frame(kItBegan + 81s).lit, kAllWell);
 }
 
 TEST_F(WatchedTest, ShowsAFaultIfNoProcessConnects) {
-  EXPECT_FALSE(watched.is_faulty(kItBegan + Watched::kStart - 1ms));
-  EXPECT_TRUE(blinks_fault(kItBegan + Watched::kStart));
+  EXPECT_FALSE(watched.is_faulty(kItBegan + HeartbeatMonitor::kStart - 1ms));
+  EXPECT_TRUE(blinks_fault(kItBegan + HeartbeatMonitor::kStart));
 }
 
 TEST_F(WatchedTest, WakesWhenSilenceBecomesAFault) {
   watched.on_lights(kAllWell, kItBegan);
   const Frame frame = watched.frame(kItBegan + 1s);
   EXPECT_EQ(frame.lit, kAllWell);
-  EXPECT_EQ(frame.lasts, Watched::kSilence - 1s);
-  EXPECT_FALSE(watched.is_faulty(kItBegan + Watched::kSilence - 1ms));
-  EXPECT_TRUE(blinks_fault(kItBegan + Watched::kSilence));
+  EXPECT_EQ(frame.lasts, HeartbeatMonitor::kSilence - 1s);
+  EXPECT_FALSE(watched.is_faulty(kItBegan + HeartbeatMonitor::kSilence - 1ms));
+  EXPECT_TRUE(blinks_fault(kItBegan + HeartbeatMonitor::kSilence));
 }
 
 TEST_F(WatchedTest, RecoversAfterAHang) {
@@ -59,7 +59,7 @@ TEST_F(WatchedTest, ShowsACrashUntilTheNextProcessReports) {
   watched.on_lights(kAllWell, kItBegan);
   watched.on_gone(kItBegan + 100ms);
   EXPECT_TRUE(blinks_fault(kItBegan + 100ms));
-  watched.on_came(kItBegan + 2s);
+  watched.on_contact(kItBegan + 2s);
   EXPECT_TRUE(watched.is_faulty(kItBegan + 2s)) << "aditd may die before its first message";
   watched.on_gone(kItBegan + 3s);
   EXPECT_TRUE(watched.is_faulty(kItBegan + 10min));
@@ -73,20 +73,21 @@ TEST_F(WatchedTest, IsDarkAfterAnAnnouncedEnd) {
   watched.on_gone(kItBegan + 1s);
   EXPECT_EQ(watched.frame(kItBegan + 1s).lit, kNoneLit);
   EXPECT_FALSE(watched.is_faulty(kItBegan + 24h)) << "aditd was stopped";
-  watched.on_came(kItBegan + 24h);
+  watched.on_contact(kItBegan + 24h);
   EXPECT_EQ(watched.frame(kItBegan + 24h).lit, kNoneLit);
-  EXPECT_TRUE(watched.is_faulty(kItBegan + 24h + Watched::kStart)) << "aditd started without a message";
+  EXPECT_TRUE(watched.is_faulty(kItBegan + 24h + HeartbeatMonitor::kStart))
+      << "aditd started without a message";
 }
 
 TEST_F(WatchedTest, ShowsACrashBeforeTheFirstMessage) {
-  watched.on_came(kItBegan);
+  watched.on_contact(kItBegan);
   watched.on_gone(kItBegan + 1s);
   EXPECT_TRUE(blinks_fault(kItBegan + 1s));
 }
 
 TEST_F(WatchedTest, StaysFaultyIfAHungProcessIsKilled) {
   watched.on_lights(kAllWell, kItBegan);
-  const Instant hung = kItBegan + Watched::kSilence;
+  const Instant hung = kItBegan + HeartbeatMonitor::kSilence;
   const Frame before = watched.frame(hung + 600ms);
   watched.on_gone(hung + 600ms);
   EXPECT_EQ(watched.frame(hung + 600ms).lit, before.lit);

@@ -24,7 +24,7 @@ icd::MapUpdate square(const std::string& robot, double x, double y, std::uint32_
   return of(robot, grid_at(x, y, side, 0.25, Cells(std::size_t{side} * side, 0)));
 }
 
-Covered covered(const Mosaic& mosaic) {
+Coverage covered(const Mosaic& mosaic) {
   CoveredArea area;
   area.update(area.changes(mosaic));
   return area.now();
@@ -33,7 +33,7 @@ Covered covered(const Mosaic& mosaic) {
 TEST(CoveredArea, CountsKnownCellsOnly) {
   Easel easel;
   easel.draw(grid_at(0, 0, 3, 0.25, {0, kUnknown, 100, kUnknown, 50, kUnknown}));
-  const Covered seen = covered(easel.mosaic);
+  const Coverage seen = covered(easel.mosaic);
   EXPECT_EQ(seen.all, 3);
   EXPECT_THAT(seen.of, ElementsAre(Pair("ugv1", 3)));
   EXPECT_TRUE(seen.is_whole);
@@ -45,7 +45,7 @@ TEST(CoveredArea, CountsAPlaceOfTwoRobotsOnce) {
   Easel easel;
   easel.draw(square("ugv1", 63, 0, 8));
   easel.draw(square("uav1", 64, 0, 8));
-  const Covered seen = covered(easel.mosaic);
+  const Coverage seen = covered(easel.mosaic);
   EXPECT_EQ(seen.all, 64 + 64 - 32);
   EXPECT_THAT(seen.of, ElementsAre(Pair("uav1", 64), Pair("ugv1", 64)));
 }
@@ -53,7 +53,7 @@ TEST(CoveredArea, CountsAPlaceOfTwoRobotsOnce) {
 TEST(CoveredArea, OmitsRobotsWithOnlyClouds) {
   Easel easel;
   easel.draw(cloud_of({{1, 1, 0}, {2, 2, 0}}));
-  const Covered seen = covered(easel.mosaic);
+  const Coverage seen = covered(easel.mosaic);
   EXPECT_EQ(seen.all, 0);
   EXPECT_THAT(seen.of, IsEmpty());
 }

@@ -70,19 +70,19 @@ TEST_F(ForwardedGridsTest, RepeatedGridChangesNothing) {
 }
 
 TEST_F(ForwardedGridsTest, TellTheirResolutionAndChanges) {
-  EXPECT_FALSE(grids.finer({"ugv1", LayerKind::Grid}, 0));
+  EXPECT_FALSE(grids.finer_levels({"ugv1", LayerKind::Grid}, 0));
   take(square(0, 0, 20, 0.2));
-  EXPECT_EQ(grids.finer(layer, 0)->level, -1);
+  EXPECT_EQ(grids.finer_levels(layer, 0)->level, -1);
   take(square(10, 0, 20, 0.05));
-  EXPECT_EQ(grids.finer(layer, 0)->level, -1);
+  EXPECT_EQ(grids.finer_levels(layer, 0)->level, -1);
   take(square(20, 0, 20, 0.02));
-  const auto finer = grids.finer(layer, 0);
+  const auto finer = grids.finer_levels(layer, 0);
   ASSERT_TRUE(finer && finer->area);
   EXPECT_EQ(finer->level, -2);
   EXPECT_EQ(finer->version, number);
   EXPECT_EQ(*finer->area, (Area{0, 0, 20.4, 4}));
-  EXPECT_EQ(*grids.finer(layer, 102)->area, (Area{20, 0, 20.4, 0.4}));
-  EXPECT_FALSE(grids.finer(layer, 103)->area);
+  EXPECT_EQ(*grids.finer_levels(layer, 102)->area, (Area{20, 0, 20.4, 0.4}));
+  EXPECT_FALSE(grids.finer_levels(layer, 103)->area);
 }
 
 TEST_F(ForwardedGridsTest, CoarseGridsAreNotKeptAlone) {
@@ -103,7 +103,7 @@ TEST_F(ForwardedGridsTest, DroppedGridRemovesOlderOnesInItsPlace) {
     EXPECT_FALSE(take(map)) << "no finer cells existed";
     take(square(0, 0, 20));
     EXPECT_TRUE(take(map));
-    EXPECT_FALSE(grids.finer(layer, 0));
+    EXPECT_FALSE(grids.finer_levels(layer, 0));
     EXPECT_EQ(grids.bytes(), 0U);
   }
 }

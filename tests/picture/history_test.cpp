@@ -6,7 +6,7 @@ namespace adit::picture {
 namespace {
 
 Tile tile(std::uint8_t what, std::size_t size = 100) {
-  return std::make_shared<Packed>(Packed{std::vector<std::uint8_t>(size, what), what});
+  return std::make_shared<PackedTile>(PackedTile{std::vector<std::uint8_t>(size, what), what});
 }
 
 /// One version per second, with the second in `what`.

@@ -116,7 +116,7 @@ TEST(Mosaic, ContinuesAnEarlierOneAfterAClockStepBack) {
   Easel earlier, easel;
   earlier.draw(grid_at(0, 0, 1, 0.25, {100}));  // at 1001
   easel.now = 500;
-  easel.mosaic.take_up(std::move(earlier.mosaic), 500);
+  easel.mosaic.restore(std::move(earlier.mosaic), 500);
   easel.draw(grid_at(0, 0, 1, 0.25, {0}));
   EXPECT_EQ(easel.seen(0.1, 0.1), kFree);
   EXPECT_EQ(easel.mosaic.layers()[0].last, 1001) << "a time that runs backward is the last one again";

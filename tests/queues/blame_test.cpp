@@ -46,7 +46,7 @@ Outcome played(const Server& server, int clouds, int senders, double until) {
     if (server(which, now)) {
       blame.on_passed(name, at(now));
       outcome.delivered.push_back(which);
-    } else if (blame.on_failed(name, map->trial, at(now)) == Blame::Next::Reject) {
+    } else if (blame.on_failed(name, map->trial, at(now)) == Blame::Decision::Reject) {
       outcome.rejected.push_back(which);
     } else {
       queue.put_back(std::move(*map));
@@ -96,7 +96,7 @@ TEST(Blame, SpacesTheTries) {
   Trial trial;
   std::vector<double> rests;
   double now = 0;
-  while (blame.on_failed("ugv1", trial, at(now)) == Blame::Next::Again) {
+  while (blame.on_failed("ugv1", trial, at(now)) == Blame::Decision::Retry) {
     blame.on_passed("ugv2", at(now + 0.5));
     const double rest = std::chrono::duration<double>(trial.rests_until - at(now)).count();
     rests.push_back(rest);
@@ -112,13 +112,13 @@ TEST(Blame, RestsUpToAMinuteIfTheAnswerMayNotReject) {
   std::vector<double> rests;
   double now = 0;
   for (int i = 0; i < 9; ++i) {
-    ASSERT_EQ(blame.on_failed("ugv1", trial, at(now), false), Blame::Next::Again) << i;
+    ASSERT_EQ(blame.on_failed("ugv1", trial, at(now), false), Blame::Decision::Retry) << i;
     blame.on_passed("ugv2", at(now + 0.5));
     rests.push_back(std::chrono::duration<double>(trial.rests_until - at(now)).count());
     now += std::max(rests.back(), 1.0);
   }
   EXPECT_EQ(rests, (std::vector<double>{0, 2, 4, 8, 16, 32, 60, 60, 60}));
-  EXPECT_EQ(blame.on_failed("ugv1", trial, at(now)), Blame::Next::Again)
+  EXPECT_EQ(blame.on_failed("ugv1", trial, at(now)), Blame::Decision::Retry)
       << "its first answer that may reject it";
 }
 
@@ -127,7 +127,7 @@ TEST(Blame, CountsNoStrikeBeforeAnotherMapPassed) {
   Trial trial;
   blame.on_passed("ugv2", at(0));
   for (int i = 1; i < 100; ++i) {
-    ASSERT_EQ(blame.on_failed("ugv1", trial, at(i)), Blame::Next::Again);
+    ASSERT_EQ(blame.on_failed("ugv1", trial, at(i)), Blame::Decision::Retry);
   }
   EXPECT_EQ(trial.strikes, 0);
 }
@@ -223,7 +223,7 @@ TEST(MapQueueOnTrial, TriesALaterMapTwiceAfterOneThatWasTooLarge) {
     ++tries[map.updates.back()];
     const auto next = blame.on_failed(name, map.trial, instant);
     queue.on_too_large(Sender::from_map(map.map), map.trial);
-    if (next == Blame::Next::Again) queue.put_back(std::move(map));
+    if (next == Blame::Decision::Retry) queue.put_back(std::move(map));
   }
   ASSERT_GE(tries.size(), 4);
   EXPECT_EQ(tries.begin()->second, 4);
@@ -237,7 +237,7 @@ TEST(MapQueueOnTrial, ForgetsStrikesOnceAMapOfThatRobotPassed) {
   Blame blame;
   queue.add(1, cloud_update("ugv1", {1}), at(0));
   auto first = *queue.pop(at(0));
-  for (int i = 0; blame.on_failed("ugv1", first.trial, at(i)) == Blame::Next::Again; ++i)
+  for (int i = 0; blame.on_failed("ugv1", first.trial, at(i)) == Blame::Decision::Retry; ++i)
     blame.on_passed("ugv2", at(i + 0.5));
   queue.on_too_large(Sender::from_map(first.map), first.trial);
   queue.add(2, cloud_update("ugv1", {2}), at(3));

@@ -105,18 +105,18 @@ class CanvasLaws : public testing::TestWithParam<std::uint64_t> {
     under_way_ = nullptr;
     const int what = pick(20);
     if (what > 3) {
-      arrives(*sent);
+      deliver(*sent);
       forget(sent->waiting.updates);
       return;
     }
-    if (what % 2 == 0) arrives(*sent);  // without an answer
+    if (what % 2 == 0) deliver(*sent);  // without an answer
     if (following_) forget(queue_.put_back(std::exchange(following_, {})->waiting));
     if (what == 3) ++sent->waiting.trial.failures;
     if (what == 1 && !sent->waiting.parts.empty()) return queue_.put_back_single(std::move(sent->waiting));
     forget(queue_.put_back(std::move(sent->waiting)));
   }
 
-  void arrives(const Sent& sent) {
+  void deliver(const Sent& sent) {
     const auto& grid = std::get<icd::OccupancyGrid>(sent.waiting.map.msg);
     if (sent.waiting.has_gaps) check_gaps(sent, grid);
     overwriting_.put(grid, sent.cells);
@@ -188,12 +188,12 @@ class CanvasLaws : public testing::TestWithParam<std::uint64_t> {
     pending_status_.reset();
     queue_ = MapQueue{0};
     queue_.canvases() = Canvases{kMostTiles};
-    queue_.canvases().carry_on(extents_);
+    queue_.canvases().restore(extents_);
     const auto kept = kept_;
     for (const auto& [number, map] : kept) forget(queue_.add(number, map, at(static_cast<double>(number))));
   }
 
-  void forget(const Replaced& replaced) { forget(replaced.numbers); }
+  void forget(const ReplacedMaps& replaced) { forget(replaced.numbers); }
   void forget(const std::vector<std::uint64_t>& numbers) {
     for (const std::uint64_t number : numbers) kept_.erase(number);
   }
@@ -203,7 +203,7 @@ class CanvasLaws : public testing::TestWithParam<std::uint64_t> {
   std::mt19937_64 random_{GetParam()};
   MapQueue queue_{0};
   std::map<std::uint64_t, icd::MapUpdate> kept_;
-  Canvases::Posted extents_;
+  Canvases::PostedAreas extents_;
   std::optional<Sent> following_;
   const Sent* under_way_ = nullptr;
   int run_ = 1, known_run_ = 1, blanked_ = 0;

@@ -45,12 +45,12 @@ class CanvasesTest : public testing::Test {
     go_together(300, 300);
     return go_together(x, y);
   }
-  void hear(int statuses) {
+  void receive_statuses(int statuses) {
     for (int i = 0; i < statuses; ++i) queue_.canvases().on_status({});
   }
 
   MapQueue queue_{0};
-  Canvases::Posted posted_;
+  Canvases::PostedAreas posted_;
   std::uint64_t number_ = 0;
 };
 
@@ -71,10 +71,10 @@ TEST_F(CanvasesTest, DoNotKnowAreasSentOnAnotherLattice) {
 
 TEST_F(CanvasesTest, NewRunKnowsMapsSentSinceTheSecondLastStatus) {
   go_together(0, 0);
-  hear(1);
+  receive_statuses(1);
   queue_.canvases().begin_run();
   EXPECT_EQ(go_together_from_now_on(4, 4), 1) << "the status may be older than the map's arrival";
-  hear(2);
+  receive_statuses(2);
   queue_.canvases().begin_run();
   EXPECT_EQ(go_together_from_now_on(4, 4), 2);
 }
@@ -84,10 +84,10 @@ TEST_F(CanvasesTest, NewRunKnowsMapsInFlightAtTheSecondLastStatus) {
   const QueuedMap under_way = take_packed();
   const icd::MapUpdate* const maps[] = {&under_way.map};
   queue_.canvases().on_status(maps);
-  hear(1);
+  receive_statuses(1);
   queue_.canvases().begin_run();
   EXPECT_EQ(go_together_from_now_on(102, 102), 1) << "the cells in its corner are unknown";
-  hear(2);
+  receive_statuses(2);
   queue_.canvases().begin_run();
   EXPECT_EQ(go_together_from_now_on(102, 102), 2);
 }
@@ -95,8 +95,8 @@ TEST_F(CanvasesTest, NewRunKnowsMapsInFlightAtTheSecondLastStatus) {
 TEST_F(CanvasesTest, NewRunCountsMapsSentBeforeARestart) {
   for (const int statuses : {0, 1, 2}) {
     queue_ = MapQueue{0};
-    queue_.canvases().carry_on({{Canvases::kAnyName, Extent::everywhere()}});
-    hear(statuses);
+    queue_.canvases().restore({{Canvases::kAnyName, Extent::infinite()}});
+    receive_statuses(statuses);
     queue_.canvases().begin_run();
     EXPECT_EQ(go_together_from_now_on(4, 4), statuses == 2 ? 2 : 1) << statuses;
   }
@@ -104,7 +104,7 @@ TEST_F(CanvasesTest, NewRunCountsMapsSentBeforeARestart) {
 
 TEST_F(CanvasesTest, ForgetCellsIfTheRunMayHaveChanged) {
   go_together(0, 0);
-  hear(2);
+  receive_statuses(2);
   queue_.canvases().change_run();
   EXPECT_EQ(go_together_from_now_on(4, 4), 1);
   EXPECT_EQ(go_together(340, 340), 2) << "no map was sent there";
@@ -112,24 +112,24 @@ TEST_F(CanvasesTest, ForgetCellsIfTheRunMayHaveChanged) {
 
 TEST_F(CanvasesTest, ResumedRunCountsAllPostedMapsAsSent) {
   go_together(0, 0);
-  hear(2);
+  receive_statuses(2);
   queue_.canvases().begin_run();
-  hear(2);
-  queue_.canvases().take_up_run();
+  receive_statuses(2);
+  queue_.canvases().resume_run();
   EXPECT_EQ(go_together_from_now_on(4, 4), 1);
 }
 
 TEST_F(CanvasesTest, ForgetSentCellsAtARestart) {
   go_together(0, 0);
-  hear(2);
+  receive_statuses(2);
   queue_.canvases().begin_run();
   queue_ = MapQueue{0};
-  queue_.canvases().carry_on(posted_);
+  queue_.canvases().restore(posted_);
   go_together(300, 300);
   EXPECT_EQ(go_together(4, 4), 1);
   EXPECT_EQ(go_together(340, 340), 2);
   queue_ = MapQueue{0};
-  queue_.canvases().carry_on({{Canvases::kAnyName, Extent::everywhere()}});
+  queue_.canvases().restore({{Canvases::kAnyName, Extent::infinite()}});
   go_together(0, 0);
   EXPECT_EQ(go_together(40, 40), 1);
 }
@@ -147,11 +147,11 @@ TEST_F(CanvasesTest, KeepCommandPostsApart) {
 }
 
 TEST_F(CanvasesTest, RunAtAnotherCommandPostChangesNothingHere) {
-  queue_.canvases().carry_on({{"R1", extent_of(grid(-1000, -1000, 100, 100))}});
+  queue_.canvases().restore({{"R1", extent_of(grid(-1000, -1000, 100, 100))}});
   queue_.canvases().lead_to("10.100.1.201:8000");
   go_together(0, 0);
   queue_.canvases().lead_to("10.100.2.201:8000");
-  hear(2);
+  receive_statuses(2);
   queue_.canvases().begin_run();
   go_together(100, 100);
   EXPECT_EQ(go_together(0, 0), 2);
@@ -219,7 +219,7 @@ TEST(ExtentOfAGrid, HoldsItsCells) {
   auto turned = grid(0, 0, 10, 20, 1);
   turned.origin.orientation = {0, 0, 1, 0};
   EXPECT_TRUE(extent_of(turned).holds({-10, -20, 0, 0}));
-  EXPECT_EQ(extent_of(grid(1e308, 0, 4'000'000'000, 1, 1e300)), Extent::everywhere());
+  EXPECT_EQ(extent_of(grid(1e308, 0, 4'000'000'000, 1, 1e300)), Extent::infinite());
 }
 
 }  // namespace

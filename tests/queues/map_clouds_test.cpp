@@ -31,7 +31,7 @@ Points set_of(const icd::MapData& data) {
 /// Compares clouds as the flow does.
 std::vector<std::uint64_t> compare_all(MapQueue& queue) {
   std::vector<std::uint64_t> gone;
-  while (const auto two = queue.to_compare()) {
+  while (const auto two = queue.uncompared_clouds()) {
     if (std::ranges::includes(set_of(two->newer), set_of(two->older))) {
       for (const auto number : queue.replace(*two)) gone.push_back(number);
     } else {
@@ -78,12 +78,12 @@ TEST(WholeClouds, LeaveGridsOfTheirRobotAlone) {
 TEST(ComparedClouds, AreReplacedByACloudWithAllTheirPoints) {
   MapQueue queue{kRoom};
   queue.add(1, cloud_update("R1", {1, 2}), at(1));
-  EXPECT_FALSE(queue.to_compare()) << "no other cloud to compare it with";
+  EXPECT_FALSE(queue.uncompared_clouds()) << "no other cloud to compare it with";
   queue.add(2, cloud_update("R1", {2, 3, 1}), at(2));
   EXPECT_THAT(compare_all(queue), ElementsAre(1));
   queue.add(3, cloud_update("R1", {4}), at(3));
   EXPECT_THAT(compare_all(queue), IsEmpty());
-  EXPECT_FALSE(queue.to_compare()) << "the comparison was made";
+  EXPECT_FALSE(queue.uncompared_clouds()) << "the comparison was made";
   EXPECT_EQ(queue.count(), 2);
   const auto merged = *queue.pop();
   EXPECT_THAT(merged.updates, ElementsAre(1, 2, 3));
@@ -99,14 +99,14 @@ TEST(ComparedClouds, ShareRobotAndPointLayout) {
   queue.add(1, cloud_update("R1", {1}), at(1));
   queue.add(2, cloud_update("R1", {1, 2}, other), at(2));
   queue.add(3, cloud_update("R2", {1, 2}), at(3));
-  EXPECT_FALSE(queue.to_compare());
+  EXPECT_FALSE(queue.uncompared_clouds());
 }
 
 TEST(ComparedClouds, AreNoneIfTheSettingIsParts) {
   MapQueue queue = queue_of(Clouds::Parts);
   queue.add(1, cloud_update("R1", {1}), at(1));
   queue.add(2, cloud_update("R1", {1}), at(2));
-  EXPECT_FALSE(queue.to_compare());
+  EXPECT_FALSE(queue.uncompared_clouds());
 }
 
 TEST(ComparedClouds, StayIfOneChangedMeanwhile) {
@@ -114,7 +114,7 @@ TEST(ComparedClouds, StayIfOneChangedMeanwhile) {
   queue.add(1, cloud_update("R1", {1}), at(1));
   queue.add(2, cloud_update("R1", {2}), at(2));
   queue.add(3, cloud_update("R1", {2, 3}), at(3));
-  const auto two = *queue.to_compare();
+  const auto two = *queue.uncompared_clouds();
   queue.put_back(*queue.pop());  // merged with the cloud that was not compared
   queue.add(4, cloud_update("R1", {4}), at(4));
   EXPECT_THAT(queue.replace(two), IsEmpty());
@@ -130,7 +130,7 @@ class CloudsCourse {
     for (int i = 0; i < steps; ++i) {
       const int what = pick(8);
       if (what < 3) add();
-      if (what == 3 && !two_) two_ = queue_.to_compare();
+      if (what == 3 && !two_) two_ = queue_.uncompared_clouds();
       if (what == 4) answer();
       if (what >= 5) send(what > 5);
     }
@@ -178,7 +178,7 @@ class CloudsCourse {
 
   std::mt19937_64 random_;
   MapQueue queue_;
-  std::optional<Successive> two_;
+  std::optional<CloudPair> two_;
   std::uint64_t number_ = 0;
 };
 

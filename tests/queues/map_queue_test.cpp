@@ -132,7 +132,7 @@ TEST(MapQueue, KeepsWhatAFailedGridReplaced) {
   failed = *queue.pop();
   queue.add(4, window(5), at(4));
   EXPECT_TRUE(queue.absorb(failed));
-  const Replaced replaced = queue.put_back(failed);
+  const ReplacedMaps replaced = queue.put_back(failed);
   EXPECT_THAT(replaced.numbers, ElementsAre(2));
   ASSERT_TRUE(replaced.bounds);
   EXPECT_EQ(replaced.bounds->first, 4);
@@ -155,7 +155,7 @@ TEST(MapQueue, KeepsWhatThePartsOfAStitchedGridReplaced) {
   failed = *queue.pop();
   QueuedMap older{grid_update("R1", grid(1.02, 0, 20, 20)), at(0), {0}};
   queue.put_back(failed);
-  const Replaced replaced = queue.put_back(older);
+  const ReplacedMaps replaced = queue.put_back(older);
   ASSERT_THAT(replaced.numbers, ElementsAre(0));
   ASSERT_TRUE(replaced.bounds);
   EXPECT_EQ(replaced.bounds->first, 3) << "the last part stands for it after a restart";
@@ -459,23 +459,24 @@ TEST(MapQueue, StaysFastInAFloodOfTinyClouds) {
 
 TEST(MapQueue, TellsIfAMapMergesIntoTheLastOfItsSender) {
   MapQueue queue{1000};
-  EXPECT_FALSE(queue.joins(grid_update("R1", grid(0, 0, 4, 4))));
+  EXPECT_FALSE(queue.can_join_last(grid_update("R1", grid(0, 0, 4, 4))));
   queue.add(1, grid_update("R1", grid(0, 0, 4, 4)), at(1));
-  EXPECT_TRUE(queue.joins(grid_update("R1", grid(0.2, 0, 4, 4))));
-  EXPECT_FALSE(queue.joins(grid_update("R1", grid(0.2, 0, 4, 4, 0.1)))) << "the grid has another lattice";
-  EXPECT_FALSE(queue.joins(grid_update("R2", grid(0.2, 0, 4, 4))));
+  EXPECT_TRUE(queue.can_join_last(grid_update("R1", grid(0.2, 0, 4, 4))));
+  EXPECT_FALSE(queue.can_join_last(grid_update("R1", grid(0.2, 0, 4, 4, 0.1))))
+      << "the grid has another lattice";
+  EXPECT_FALSE(queue.can_join_last(grid_update("R2", grid(0.2, 0, 4, 4))));
   queue.put_back_single(*[&] {
     queue.add(2, grid_update("R1", grid(0.2, 0, 4, 4)), at(2));
     return queue.pop();
   }());
-  EXPECT_FALSE(queue.joins(grid_update("R1", grid(0.4, 0, 4, 4)))) << "the queued grid is sent alone";
+  EXPECT_FALSE(queue.can_join_last(grid_update("R1", grid(0.4, 0, 4, 4)))) << "the queued grid is sent alone";
 
   auto turned = icd::xyz();
   turned.is_bigendian = true;
   queue.add(3, cloud_update("R1", {1}), at(3));
-  EXPECT_TRUE(queue.joins(cloud_update("R1", {2})));
-  EXPECT_FALSE(queue.joins(cloud_update("R1", {2}, turned)));
-  EXPECT_FALSE(queue.joins(cloud_update("", {2})));
+  EXPECT_TRUE(queue.can_join_last(cloud_update("R1", {2})));
+  EXPECT_FALSE(queue.can_join_last(cloud_update("R1", {2}, turned)));
+  EXPECT_FALSE(queue.can_join_last(cloud_update("", {2})));
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ struct Race {
 /// the senders that were waiting then.
 class TurnCheck {
  public:
-  void begins(const std::string& who) {
+  void begin(const std::string& who) {
     if (!others_.contains(who)) others_[who] = waiting();
   }
   void served(const std::string& who, bool waits_still) {
@@ -51,7 +51,7 @@ class TurnCheck {
           << who << " is served twice or before its turn, while " << each << " waits";
     }
     others_.erase(who);
-    if (waits_still) begins(who);
+    if (waits_still) begin(who);
   }
 
  private:
@@ -75,7 +75,7 @@ TEST_P(MapTurns, WaitingSenderIsPassedAtMostOnceByEach) {
     race.now = slot;
     const auto post = [&](const std::string& who) {
       race.post(patch(who, race.number));
-      turn_check.begins(who);
+      turn_check.begin(who);
     };
     for (int i = 0; i < 6; ++i) post("hostile");
     if (pick(3) == 0) post("new" + std::to_string(slot));  // each time under another name

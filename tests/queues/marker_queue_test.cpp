@@ -280,9 +280,9 @@ TEST(MarkerQueue, FullQueueStillAcceptsReplacementsInAnUpdate) {
   queue.add({{path(1, 1000), path(2, 1000), path(3, 1000)}}, at(1));
   const icd::MarkersUpdate update{{path(4, 10), path(1, 1010), remove(5), path(2, 1000)}};
   ASSERT_FALSE(queue.has_room_for(update));
-  EXPECT_THAT(queue.those_that_wait(update).markers, ElementsAre(path(1, 1010), path(2, 1000)));
-  EXPECT_TRUE(queue.has_room_for(queue.those_that_wait(update)));
-  EXPECT_THAT(queue.those_that_wait({{path(1, 1), remove_all(), path(7, 1)}}).markers,
+  EXPECT_THAT(queue.queued_changes(update).markers, ElementsAre(path(1, 1010), path(2, 1000)));
+  EXPECT_TRUE(queue.has_room_for(queue.queued_changes(update)));
+  EXPECT_THAT(queue.queued_changes({{path(1, 1), remove_all(), path(7, 1)}}).markers,
               ElementsAre(remove_all()));
 }
 

@@ -25,7 +25,7 @@ Pipelining after(int accepted) {
 }
 
 bool may_go(const Pipelining& ahead, double now = 1, bool went_ahead = false) {
-  return ahead.may_go(kGrid, {.map = kCloud, .arrived = at(1), .went_ahead = went_ahead}, at(now));
+  return ahead.can_send(kGrid, {.map = kCloud, .arrived = at(1), .went_ahead = went_ahead}, at(now));
 }
 
 TEST(Pipelining, AllowedIfTheOrderDoesNotMatter) {
@@ -79,8 +79,8 @@ TEST(Pipelining, ForbiddenForAMapThatFailedBefore) {
   QueuedMap failed = kGrid;
   failed.trial.failures = 1;
   const Pipelining ahead = after(Pipelining::kWell);
-  EXPECT_FALSE(ahead.may_go(failed, {.map = kCloud, .arrived = at(1), .went_ahead = false}, at(1)));
-  EXPECT_FALSE(ahead.may_go(kCloud, {.map = failed, .arrived = at(1), .went_ahead = false}, at(1)));
+  EXPECT_FALSE(ahead.can_send(failed, {.map = kCloud, .arrived = at(1), .went_ahead = false}, at(1)));
+  EXPECT_FALSE(ahead.can_send(kCloud, {.map = failed, .arrived = at(1), .went_ahead = false}, at(1)));
 }
 
 TEST(Pipelining, BacksOffIfTwoInFlightFail) {

@@ -38,7 +38,7 @@ class PrecisionOf : public testing::Test {
 };
 
 TEST_F(PrecisionOf, ARobotIsItsSetting) {
-  queue_.a_message_holds({1, 1, 1});
+  queue_.set_message_points({1, 1, 1});
   add("R2", 3);
   EXPECT_EQ(next(), Precision::Millimetre);
   add("R3", 3);
@@ -47,7 +47,7 @@ TEST_F(PrecisionOf, ARobotIsItsSetting) {
 }
 
 TEST_F(PrecisionOf, CloudsOfNoRobotAndGridsIsExact) {
-  queue_.a_message_holds({1, 1, 1});
+  queue_.set_message_points({1, 1, 1});
   add("", 1);
   EXPECT_EQ(next(), Precision::Exact);
   queue_.add(++number_, grid_update("R2", grid(0, 0, 2, 2)), at(1));
@@ -57,7 +57,7 @@ TEST_F(PrecisionOf, CloudsOfNoRobotAndGridsIsExact) {
 TEST_F(PrecisionOf, AutoFollowsTheQueuedBytes) {
   add("R1", 1);
   const std::size_t one = queue_.bytes();
-  queue_.a_message_holds({one, 2 * one, 3 * one});
+  queue_.set_message_points({one, 2 * one, 3 * one});
   EXPECT_EQ(next(), Precision::Exact);
   add("R1", 2);
   EXPECT_EQ(next(), Precision::Millimetre);
@@ -71,7 +71,7 @@ TEST_F(PrecisionOf, AutoFollowsTheQueuedBytes) {
 TEST_F(PrecisionOf, AutoMergesAtMostOneMessage) {
   add("R1", 1);
   const std::size_t points = queue_.pop()->map.data.raw_size;
-  queue_.a_message_holds({points, 2 * points, 3 * points});
+  queue_.set_message_points({points, 2 * points, 3 * points});
   add("R1", 9);
   const auto taken = queue_.pop();
   EXPECT_EQ(taken->precision, Precision::EightMillimetres);
@@ -80,10 +80,10 @@ TEST_F(PrecisionOf, AutoMergesAtMostOneMessage) {
 
 TEST_F(PrecisionOf, ARetriedCloudIsChosenAnew) {
   add("R1", 1);
-  queue_.a_message_holds({1, 1, 1});
+  queue_.set_message_points({1, 1, 1});
   auto back = *queue_.pop();
   EXPECT_EQ(back.precision, Precision::EightMillimetres);
-  queue_.a_message_holds(kAnyPoints);
+  queue_.set_message_points(kAnyPoints);
   (void)queue_.put_back(std::move(back));
   EXPECT_EQ(next(), Precision::Exact);
 }

@@ -130,12 +130,12 @@ TEST(RejectedMessages, AreNotReplacedByTheGapOfAStitchedGrid) {
   rejected.add(item(grid_update("ugv1", grid(1, 0, 10, 10))));  // in the middle
   rejected.add(item(grid_update("ugv1", grid(2, 0, 5, 5))));    // within the second part
   std::vector<std::uint64_t> replaced;
-  for (const icd::MapUpdate* const map : said_by(stitched))
+  for (const icd::MapUpdate* const map : delivered_maps(stitched))
     std::ranges::copy(deliver(rejected, *map), std::back_inserter(replaced));
   EXPECT_EQ(replaced, std::vector<std::uint64_t>{2});
   stitched.has_gaps = false;
-  ASSERT_EQ(said_by(stitched).size(), 1u);
-  EXPECT_EQ(deliver(rejected, *said_by(stitched).front()), std::vector<std::uint64_t>{1});
+  ASSERT_EQ(delivered_maps(stitched).size(), 1u);
+  EXPECT_EQ(deliver(rejected, *delivered_maps(stitched).front()), std::vector<std::uint64_t>{1});
 }
 
 TEST(RejectedMessages, AreRetriedIfTheSentGridHasAGapThere) {

@@ -273,7 +273,7 @@ TEST(StampShift, ContinuesUnchangedAfterARestart) {
     theirs = std::max(0.0, theirs + step(random) + 1.2);
     ASSERT_EQ(living.shift(of(sender), theirs, now), uninterrupted.shift(of(sender), theirs, now)) << i;
     StampShift next;
-    for (const auto& [each, clock] : living.clocks()) next.carry_on(each, clock);
+    for (const auto& [each, clock] : living.clocks()) next.restore(each, clock);
     living = std::move(next);
   }
 }
@@ -299,7 +299,7 @@ TEST(StampShift, ForgetsTheLongestSilentAddressAfterARestart) {
   for (std::size_t i = 0; i < StampShift::kMostAddresses; ++i) shift.shift(at(i), 5.0, kNow);
   shift.shift(at(0), 5.5, kNow);
   StampShift next;
-  for (const auto& [sender, clock] : shift.clocks()) next.carry_on(sender, clock);
+  for (const auto& [sender, clock] : shift.clocks()) next.restore(sender, clock);
   next.shift(of("R1", "new"), 5.0, kNow + 9);
   EXPECT_THAT(next.shift(at(0), 6.0, kNow + 9), DoubleNear(kNow + 1, 1e-6));
   EXPECT_EQ(next.shift(at(1), 6.0, kNow + 9), kNow + 9);

@@ -294,7 +294,7 @@ TEST(StateQueue, ForgetsDeliveredRobots) {
   post(queue, state(10, {pose("R1", 1), pose("R2", 2)}), at(1));
   queue.on_passed(*queue.pop());
   post(queue, state(12, {pose("R2", 3)}), at(2));
-  queue.forget_what_was_taken();
+  queue.forget_accepted();
   EXPECT_TRUE(queue.pop());
   post(queue, state(13, {pose("R3", 4)}), at(3));
   EXPECT_THAT(queue.pop()->update.poses, ElementsAre(pose("R2", 3), pose("R3", 4)));

@@ -108,11 +108,11 @@ class StitchLaws : public testing::TestWithParam<std::uint64_t> {
     } else if (how == 7 && !next->parts.empty()) {
       queue_.put_back_single(std::move(*next));
     } else {
-      arrives(*next, cells);
+      deliver(*next, cells);
     }
   }
 
-  void arrives(const QueuedMap& sent, const std::vector<std::uint8_t>& cells) {
+  void deliver(const QueuedMap& sent, const std::vector<std::uint8_t>& cells) {
     auto value = cells.begin();
     for_each_cell(sent.map, [&](const Place& place) {
       overwriting_.put(place, *value);

@@ -34,7 +34,7 @@ command_line::Program command_line_of(Options& options) {
            {"--until", "CHECK", "ends where that check finds something", &options.until},
            {"--as-it-is", "", "a run that fails is not shrunk", &options.as_it_is}},
       .ending = "Exits 0 where all runs were good, 1 where one was not, 2 on a wrong command line.",
-      .empty = command_line::Empty::Taken,
+      .empty = command_line::EmptyValue::Accepted,
   };
 }
 

@@ -109,7 +109,7 @@ class World {
   void look_at_heap();
 
   std::function<void()> on_sigterm;
-  std::vector<host::Inherited> inherited;  // descriptors for a process that starts again
+  std::vector<host::InheritedDescriptor> inherited;  // descriptors for a process that starts again
   std::vector<std::vector<Item>> posted_maps;
 
  private:

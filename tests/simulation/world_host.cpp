@@ -34,7 +34,7 @@ void log(Level level, std::string_view message, std::initializer_list<Field> fie
   say(level, message, fields);
 }
 
-void tell_console(Level level, std::string_view message, std::initializer_list<Field> fields) {
+void log_to_console(Level level, std::string_view message, std::initializer_list<Field> fields) {
   memory().keep(World::current().stamp(), level, message, {});
   say(level, message, fields);
 }

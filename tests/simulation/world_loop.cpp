@@ -164,8 +164,8 @@ void Loop::set_wall(double now) {
 double Loop::wall_offset() const {
   return impl_->wall.offset();
 }
-double Loop::look_at_wall(bool system_is_right) {
-  return impl_->wall.look(impl_->world.stamp(), now(), system_is_right);
+double Loop::check_wall_clock(bool system_is_right) {
+  return impl_->wall.update(impl_->world.stamp(), now(), system_is_right);
 }
 
 Source Loop::watch(int fd, std::uint32_t events, std::function<void(std::uint32_t)> ready) {

@@ -43,13 +43,13 @@ std::optional<std::chrono::microseconds> watchdog_interval() {
   return kWatchdog;
 }
 
-std::expected<std::vector<Inherited>, std::string> inherited_sockets() {
+std::expected<std::vector<InheritedDescriptor>, std::string> inherited_sockets() {
   return std::exchange(World::current().inherited, {});
 }
 void store_descriptor(const std::string&, int) {}
 void forget_descriptor(const std::string&) {}
 
-void restart_process(std::vector<Inherited> sockets, char* const*,
+void restart_process(std::vector<InheritedDescriptor> sockets, char* const*,
                      std::map<std::string, std::string> variables) {
   World& world = World::current();
   world.crossing();

@@ -41,8 +41,9 @@ std::unique_ptr<Lines> make_simulated_lines(std::string) {
   return std::make_unique<Shown>();
 }
 
-std::expected<Held, std::string> remote(const std::string&, const settings::Panel&, loop::FileDescriptor) {
-  return Held{std::make_unique<Shown>(), nullptr};
+std::expected<PanelDevices, std::string> remote(const std::string&, const settings::Panel&,
+                                                loop::FileDescriptor) {
+  return PanelDevices{std::make_unique<Shown>(), nullptr};
 }
 
 loop::FileDescriptor announce(const std::string&) {

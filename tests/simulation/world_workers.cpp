@@ -109,8 +109,8 @@ class Pool : public std::enable_shared_from_this<Pool> {
 
 class Workers::Impl {
  public:
-  Impl(Loop& loop, unsigned count, AtEnd at_end)
-      : pool_(std::make_shared<Pool>(loop, count, at_end == AtEnd::Finish)) {}
+  Impl(Loop& loop, unsigned count, ShutdownPolicy at_end)
+      : pool_(std::make_shared<Pool>(loop, count, at_end == ShutdownPolicy::Finish)) {}
   ~Impl() { pool_->end(); }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
@@ -120,7 +120,7 @@ class Workers::Impl {
   const std::shared_ptr<Pool> pool_;
 };
 
-Workers::Workers(Loop& loop, unsigned count, AtEnd at_end)
+Workers::Workers(Loop& loop, unsigned count, ShutdownPolicy at_end)
     : impl_(std::make_unique<Impl>(loop, count, at_end)) {}
 Workers::~Workers() = default;
 
@@ -134,7 +134,7 @@ void Workers::submit(Urgency urgency, std::function<void()> work, std::function<
 }
 void Workers::give_way() {}  // jobs take no time
 void Workers::ask() {}
-bool Workers::are_well(Duration) const {
+bool Workers::are_responsive(Duration) const {
   return true;
 }
 

@@ -9,7 +9,7 @@ constexpr double kAt = 1795475760;  // 2026-11-23T23:16:00Z
 
 TEST(ExportName, HasBoxAndTime) {
   EXPECT_EQ(file_name("10.0.0.1", kAt), "adit-10.0.0.1-20261123T231600Z.adit-spare");
-  EXPECT_EQ(named_for(file_name("10.0.0.1", kAt)), (NamedFor{"10.0.0.1", kAt}));
+  EXPECT_EQ(named_for(file_name("10.0.0.1", kAt)), (ExportName{"10.0.0.1", kAt}));
 }
 
 TEST(ExportName, ReplacesUnsafeCharacters) {
@@ -22,7 +22,7 @@ TEST(ExportName, ReplacesUnsafeCharacters) {
 TEST(ExportName, AcceptsRenamedFiles) {
   for (const char* const name : {"export.adit-spare", "export (1).adit-spare", "Box A.adit-spare"}) {
     EXPECT_TRUE(is_file_name(name)) << name;
-    EXPECT_EQ(named_for(name), NamedFor{}) << name;
+    EXPECT_EQ(named_for(name), ExportName{}) << name;
   }
 }
 
@@ -40,7 +40,7 @@ TEST(ExportName, HasNoInvalidTime) {
        {"adit-10.0.0.1-20261323T231600Z.adit-spare", "adit-10.0.0.1-20260230T231600Z.adit-spare",
         "adit-10.0.0.1-2026.adit-spare", "adit-20261123T231600Z.adit-spare",
         "adit--20261123T231600Z.adit-spare", "adit-10.0.0.1-20261123T231600Zx.adit-spare"})
-    EXPECT_EQ(named_for(name), NamedFor{}) << name;
+    EXPECT_EQ(named_for(name), ExportName{}) << name;
 }
 
 TEST(ExportName, SortsTheLaterExportFirst) {

@@ -49,14 +49,14 @@ TEST(SealedExport, OfALaterAditIsRejectedByItsFirstBytes) {
   file[10] = 2;
   const char* const why =
       "a later Adit made this export (version 2, this box reads 1): update this box first";
-  EXPECT_EQ(not_an_export(file.substr(0, kExportHead)), why);
+  EXPECT_EQ(export_error(file.substr(0, kExportHead)), why);
   EXPECT_EQ(why_not(file), why);
 }
 
 TEST(SealedExport, OtherFilesAreRejectedByTheirFirstBytes) {
-  EXPECT_EQ(not_an_export(sealed("a ledger").substr(0, kExportHead)), "");
+  EXPECT_EQ(export_error(sealed("a ledger").substr(0, kExportHead)), "");
   for (const std::string_view other : {"", "adit", "PK\3\4 a zip file", "adit-share\1"})
-    EXPECT_EQ(not_an_export(other.substr(0, kExportHead)), "the file is not an export from Adit") << other;
+    EXPECT_EQ(export_error(other.substr(0, kExportHead)), "the file is not an export from Adit") << other;
 }
 
 TEST(Code, HasSixteenDigits) {

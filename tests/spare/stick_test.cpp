@@ -10,10 +10,10 @@ namespace {
 constexpr const char* kNonce = "0123456789abcdef0123456789abcdef";
 
 TEST(StickMessages, ReadBackTheSame) {
-  const StickRequest request{.nonce = kNonce, .what = StickRequest::What::Write, .name = "a.adit-spare"};
+  const StickRequest request{.nonce = kNonce, .what = StickRequest::Command::Write, .name = "a.adit-spare"};
   const auto read = codec::read_file<StickRequest>(codec::write_file(request));
   ASSERT_TRUE(read) << read.error();
-  EXPECT_EQ(read->what, StickRequest::What::Write);
+  EXPECT_EQ(read->what, StickRequest::Command::Write);
   EXPECT_EQ(read->name, "a.adit-spare");
   const StickStatus status{.nonce = kNonce,
                            .refusal = "no",
@@ -27,10 +27,10 @@ TEST(StickMessages, ReadBackTheSame) {
 
 TEST(StickMessages, NameNothingOutsideTheStick) {
   for (const char* const name : {"../../etc/passwd", "/etc/shadow", "a/b.adit-spare", ".adit-spare", ""}) {
-    const StickRequest request{.nonce = kNonce, .what = StickRequest::What::Take, .name = name};
+    const StickRequest request{.nonce = kNonce, .what = StickRequest::Command::Take, .name = name};
     EXPECT_FALSE(codec::read_file<StickRequest>(codec::write_file(request))) << name;
   }
-  const StickRequest nameless{.nonce = "x", .what = StickRequest::What::Take, .name = "a.adit-spare"};
+  const StickRequest nameless{.nonce = "x", .what = StickRequest::Command::Take, .name = "a.adit-spare"};
   EXPECT_FALSE(codec::read_file<StickRequest>(codec::write_file(nameless)));
   EXPECT_FALSE(codec::read_file<StickRequest>(
       R"({"format":1,"nonce":"0123456789abcdef0123456789abcdef","what":"format","name":"a.adit-spare"})"));

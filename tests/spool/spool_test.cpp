@@ -141,8 +141,8 @@ class EndedSpool : public SpoolTest {
   std::string folder() const { return folder_ / "waiting"; }
   /// A process that does `work` and is killed. Returns the ends that it has read, by the map's place.
   template <class Work>
-  std::vector<Spool::Ends> kill_after(Work work) {
-    std::vector<Spool::Ends> ends;
+  std::vector<Spool::EndCounts> kill_after(Work work) {
+    std::vector<Spool::EndCounts> ends;
     {
       Spool spool(folder());
       for (const auto& kept : spool.read()) ends.push_back(kept.ends);
@@ -154,10 +154,10 @@ class EndedSpool : public SpoolTest {
     fs::rename(folder() + ".killed", folder());
     return ends;
   }
-  std::vector<Spool::Ends> kill_in(const std::vector<std::uint64_t>& numbers, bool by_fault = false) {
+  std::vector<Spool::EndCounts> kill_in(const std::vector<std::uint64_t>& numbers, bool by_fault = false) {
     return kill_after([&](Spool& spool) {
-      spool.work_begins(numbers);
-      if (by_fault) spool.work_overruns();
+      spool.begin_work(numbers);
+      if (by_fault) spool.record_overrun();
     });
   }
 };
@@ -165,8 +165,8 @@ class EndedSpool : public SpoolTest {
 TEST_F(EndedSpool, NeverLosesAMapByKills) {
   for (int i = 0; i < 10; ++i) EXPECT_EQ(kill_in({1, 2}).size(), 3u) << i;
   const auto ends = kill_in({});
-  EXPECT_EQ(ends[0], (Spool::Ends{.faults = 0, .others = 10}));
-  EXPECT_EQ(ends[2], Spool::Ends());
+  EXPECT_EQ(ends[0], (Spool::EndCounts{.faults = 0, .others = 10}));
+  EXPECT_EQ(ends[2], Spool::EndCounts());
 }
 
 TEST_F(EndedSpool, CountsFaultsApart) {
@@ -175,29 +175,29 @@ TEST_F(EndedSpool, CountsFaultsApart) {
   kill_in({3});
   kill_in({1}, /*by_fault=*/true);
   const auto ends = kill_in({});
-  EXPECT_EQ(ends[0], (Spool::Ends{.faults = 2, .others = 1}));
-  EXPECT_EQ(ends[1], (Spool::Ends{.faults = 0, .others = 1}));
-  EXPECT_EQ(ends[2], (Spool::Ends{.faults = 0, .others = 1}));
+  EXPECT_EQ(ends[0], (Spool::EndCounts{.faults = 2, .others = 1}));
+  EXPECT_EQ(ends[1], (Spool::EndCounts{.faults = 0, .others = 1}));
+  EXPECT_EQ(ends[2], (Spool::EndCounts{.faults = 0, .others = 1}));
 }
 
 TEST_F(EndedSpool, CountsNoEndAfterTheWork) {
   kill_in({1, 2}, /*by_fault=*/true);
   kill_after([](Spool& spool) {
-    spool.work_begins({1});
-    spool.work_overruns();
-    spool.work_ends(/*are_packed=*/true);
-    spool.work_begins({2});
-    spool.work_ends(/*are_packed=*/false);
+    spool.begin_work({1});
+    spool.record_overrun();
+    spool.end_work(/*are_packed=*/true);
+    spool.begin_work({2});
+    spool.end_work(/*are_packed=*/false);
   });
   {
     Spool orderly(folder());
     (void)orderly.read();
-    orderly.work_begins({3});
+    orderly.begin_work({3});
   }
   const auto ends = kill_in({});
-  EXPECT_EQ(ends[0], Spool::Ends()) << "it was packed since";
-  EXPECT_EQ(ends[1], (Spool::Ends{.faults = 1, .others = 0}));
-  EXPECT_EQ(ends[2], Spool::Ends());
+  EXPECT_EQ(ends[0], Spool::EndCounts()) << "it was packed since";
+  EXPECT_EQ(ends[1], (Spool::EndCounts{.faults = 1, .others = 0}));
+  EXPECT_EQ(ends[2], Spool::EndCounts());
 }
 
 TEST_F(EndedSpool, ForgetsTheEndsOfAMapThatIsGone) {
@@ -216,9 +216,9 @@ TEST_F(EndedSpool, RemembersTheEndsOfAMapUnderAnotherNumber) {
     spool.forget(2);
     ASSERT_TRUE(spool.keep(4, grid("r1", 1), 0));
   });
-  EXPECT_EQ(ends[1], (Spool::Ends{.faults = 3, .others = 0}));
+  EXPECT_EQ(ends[1], (Spool::EndCounts{.faults = 3, .others = 0}));
   kill_after([](Spool& spool) { ASSERT_TRUE(spool.keep(2, grid("r1", 1), 0)); });
-  EXPECT_EQ(kill_in({})[1], Spool::Ends()) << "another map, of a later process";
+  EXPECT_EQ(kill_in({})[1], Spool::EndCounts()) << "another map, of a later process";
 }
 
 TEST_F(SpoolTest, IsPrivate) {

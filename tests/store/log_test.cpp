@@ -114,8 +114,8 @@ TEST_F(LogTest, TruncatedFileIsReportedAtEachStart) {
 }
 
 TEST_F(LogTest, ReadsAFileOfAnAbsurdSizeUpToItsEnd) {
-  for (const Keeping& keeping :
-       {Keeping{{512, 2}, 8192, true, 1u << 20}, Keeping{kInMemory, 0, false, 1u << 20}}) {
+  for (const LogOptions& keeping :
+       {LogOptions{{512, 2}, 8192, true, 1u << 20}, LogOptions{kInMemory, 0, false, 1u << 20}}) {
     const SmallLog made(keeping);
     made.fill({"a", "b"}, Durability::Now);
     made.snapshot({"ab"});
@@ -136,7 +136,7 @@ TEST_F(LogTest, ReadsAFileOfAnAbsurdSizeUpToItsEnd) {
 }
 
 TEST_F(LogTest, TurnsAFileThatGrowsBeforeItIsTooLongToBeRead) {
-  const SmallLog made(Keeping{kInMemory, 0, false, 4096});
+  const SmallLog made(LogOptions{kInMemory, 0, false, 4096});
   const std::vector<std::string> all(10, std::string(1000, 'x'));
   made.fill(all, Durability::Now);
   EXPECT_EQ(bodies(made.read().value()), all);
@@ -144,7 +144,7 @@ TEST_F(LogTest, TurnsAFileThatGrowsBeforeItIsTooLongToBeRead) {
 }
 
 TEST_F(LogTest, NamesNoSnapshotThatIsTooLongToBeRead) {
-  const SmallLog made(Keeping{{512, 2}, 8192, true, 8192});
+  const SmallLog made(LogOptions{{512, 2}, 8192, true, 8192});
   made.fill({"a"}, Durability::Now);
   auto opened = made.open();
   ASSERT_TRUE(opened.log.turn());

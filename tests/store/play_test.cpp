@@ -217,7 +217,7 @@ class Play {
   Random random_;
   Disk disk_;
   const bool on_disk_;
-  Keeping keeping_;
+  LogOptions keeping_;
   Book book_;
   std::vector<std::map<std::string, std::string>> copies_;  // of the files, after each process
   std::uint64_t count_ = 0;
@@ -245,7 +245,7 @@ TEST(LogFiles, LeavesNoFileThatItCannotOpen) {
   Disk disk(Random(1, "disk"));
   disk.start();
   const auto directory = Directory::lock(disk.log()).value();
-  const Keeping keeping{{512, 2}, 8192, true};
+  const LogOptions keeping{{512, 2}, 8192, true};
   Log log(directory, keeping);
   ASSERT_TRUE(log.start(Contents::read(directory, keeping).value()));
   ASSERT_TRUE(log.append(kKind, "a", Durability::Now));

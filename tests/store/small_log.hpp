@@ -15,12 +15,12 @@
 namespace adit::store {
 
 /// Frames of 512 bytes, in two copies; a file holds seven.
-inline constexpr Keeping kSmall{{512, 2}, 8192, true};
+inline constexpr LogOptions kSmall{{512, 2}, 8192, true};
 
 /// A log in its own directory.
 class SmallLog {
  public:
-  explicit SmallLog(const Keeping& keeps = kSmall) : keeping(keeps) {
+  explicit SmallLog(const LogOptions& keeps = kSmall) : keeping(keeps) {
     std::string name =
         (std::filesystem::exists("/dev/shm") ? "/dev/shm" : std::filesystem::temp_directory_path().native()) +
         "/adit-store-XXXXXX";
@@ -32,7 +32,7 @@ class SmallLog {
   SmallLog& operator=(const SmallLog&) = delete;
 
   struct Opened {
-    Opened(const std::string& path, const Keeping& keeping)
+    Opened(const std::string& path, const LogOptions& keeping)
         : directory(Directory::lock(path).value()),
           contents(Contents::read(directory, keeping).value()),
           log(directory, keeping) {
@@ -74,7 +74,7 @@ class SmallLog {
         .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   }
 
-  const Keeping keeping;
+  const LogOptions keeping;
 
  private:
   std::string path_;

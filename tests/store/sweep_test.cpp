@@ -10,7 +10,7 @@ namespace {
 /// A snapshot, and two files after it.
 class SweepLog : public testing::Test {
  protected:
-  void make(const Keeping& keeping) {
+  void make(const LogOptions& keeping) {
     small_.emplace(keeping);
     small_->fill({"a", "b", "c"}, Durability::Now);
     small_->snapshot({"abc"});

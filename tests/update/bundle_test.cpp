@@ -10,7 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const Running kRunning = {"adit-qemu-virt", "0.2.0", "A", "B"};
+const RunningSystem kRunning = {"adit-qemu-virt", "0.2.0", "A", "B"};
 
 TEST(Bundle, IsReadFromTheOutputOfRauc) {
   const auto bundle = read_info(
@@ -31,14 +31,14 @@ TEST(Bundle, IsInvalidWithoutOutputOfRauc) {
 TEST(Bundle, IsRecognizedByItsFirstBytes) {
   std::vector<std::uint8_t> head(kBundleHead);
   head[0] = 'h', head[1] = 's', head[2] = 'q', head[3] = 's', head[41] = 1;  // of 256 bytes
-  EXPECT_EQ(not_a_bundle(head, 257), "");
-  EXPECT_EQ(not_a_bundle(head, 256), "the update is incomplete: expected more than 256 bytes, got 256");
+  EXPECT_EQ(bundle_error(head, 257), "");
+  EXPECT_EQ(bundle_error(head, 256), "the update is incomplete: expected more than 256 bytes, got 256");
   for (std::size_t at = 40; at < kBundleHead; ++at) head[at] = 0xff;
-  EXPECT_NE(not_a_bundle(head, ~std::uint64_t{0}), "");
-  EXPECT_NE(not_a_bundle(std::span(head).first(kBundleHead - 1), 257), "");
-  EXPECT_NE(not_a_bundle({}, 257), "");
+  EXPECT_NE(bundle_error(head, ~std::uint64_t{0}), "");
+  EXPECT_NE(bundle_error(std::span(head).first(kBundleHead - 1), 257), "");
+  EXPECT_NE(bundle_error({}, 257), "");
   head[3] = 'S';
-  EXPECT_EQ(not_a_bundle(head, 257), "the file is not an update: expected a file adit-BOARD-VERSION.raucb");
+  EXPECT_EQ(bundle_error(head, 257), "the file is not an update: expected a file adit-BOARD-VERSION.raucb");
 }
 
 TEST(RunningSlot, IsReadFromTheStatusOfRauc) {
@@ -48,7 +48,7 @@ TEST(RunningSlot, IsReadFromTheStatusOfRauc) {
       {"boot.0":{"class":"boot","bootname":null,"state":"inactive","parent":"rootfs.0"}},
       {"rootfs.0":{"class":"rootfs","bootname":"A","state":"inactive","parent":null}}]})");
   ASSERT_TRUE(running) << running.error();
-  EXPECT_EQ(*running, (Running{"adit-qemu-virt", "", "B", "A"}));
+  EXPECT_EQ(*running, (RunningSystem{"adit-qemu-virt", "", "B", "A"}));
 }
 
 TEST(RunningSlot, TellsIfTheOtherSlotIsNext) {
@@ -129,35 +129,35 @@ TEST(Fault, TellsThatRaucIsBusy) {
 
 TEST(Hindrance, IsAbsentForANewerVersion) {
   for (const char* version : {"0.2.1", "0.3.0-rc.1", "1.0.0"}) {
-    EXPECT_EQ(hindrance({"adit-qemu-virt", version}, kRunning, false), "") << version;
+    EXPECT_EQ(refusal_reason({"adit-qemu-virt", version}, kRunning, false), "") << version;
   }
 }
 
 TEST(Hindrance, IsAnotherBoard) {
-  EXPECT_EQ(hindrance({"adit-generic-x86_64", "0.3.0"}, kRunning, true),
+  EXPECT_EQ(refusal_reason({"adit-generic-x86_64", "0.3.0"}, kRunning, true),
             R"(the update is for another board: "adit-generic-x86_64", but this board is "adit-qemu-virt")");
-  EXPECT_THAT(hindrance({"", "0.3.0"}, kRunning, true), HasSubstr("another board"));
+  EXPECT_THAT(refusal_reason({"", "0.3.0"}, kRunning, true), HasSubstr("another board"));
 }
 
 TEST(Hindrance, IsAnOlderVersionEvenIfConfirmed) {
   for (const char* version : {"0.1.9", "0.2.0-rc.1", "0.0.1"}) {
-    EXPECT_EQ(hindrance({"adit-qemu-virt", version}, kRunning, true),
+    EXPECT_EQ(refusal_reason({"adit-qemu-virt", version}, kRunning, true),
               "the update is older (" + std::string(version) + ") than the running version (0.2.0)");
   }
 }
 
 TEST(Hindrance, IsTheSameVersionUnlessConfirmed) {
-  EXPECT_EQ(hindrance({"adit-qemu-virt", "0.2.0"}, kRunning, false),
+  EXPECT_EQ(refusal_reason({"adit-qemu-virt", "0.2.0"}, kRunning, false),
             "0.2.0 is already running: confirm to install it again");
-  EXPECT_EQ(hindrance({"adit-qemu-virt", "0.2.0"}, kRunning, true), "");
+  EXPECT_EQ(refusal_reason({"adit-qemu-virt", "0.2.0"}, kRunning, true), "");
 }
 
 TEST(Hindrance, IsAnIncomparableVersion) {
-  EXPECT_THAT(hindrance({"adit-qemu-virt", "newest"}, kRunning, true),
+  EXPECT_THAT(refusal_reason({"adit-qemu-virt", "newest"}, kRunning, true),
               HasSubstr("cannot read the update's version"));
-  Running unknown = kRunning;
+  RunningSystem unknown = kRunning;
   unknown.version = "";
-  EXPECT_THAT(hindrance({"adit-qemu-virt", "9.0.0"}, unknown, true),
+  EXPECT_THAT(refusal_reason({"adit-qemu-virt", "9.0.0"}, unknown, true),
               HasSubstr("cannot read the running version"));
 }
 

@@ -5,7 +5,7 @@
 namespace adit::update {
 namespace {
 
-const Running kOld = {"adit-board", "0.1.0", "A", "B"}, kNew = {"adit-board", "0.2.0", "B", "A"};
+const RunningSystem kOld = {"adit-board", "0.1.0", "A", "B"}, kNew = {"adit-board", "0.2.0", "B", "A"};
 
 LastUpdate last_update(Stage stage) {
   return {.stage = stage, .version = "0.2.0", .slot = "B", .boot = "first", .why = "because"};
@@ -42,7 +42,7 @@ TEST(LastUpdate, RunningIsATrialEvenIfItsEndWasNotSeen) {
 }
 
 TEST(LastUpdate, AnotherVersionIsNoTrial) {
-  Running before = kNew;
+  RunningSystem before = kNew;
   before.version = "0.1.0";
   for (const Stage stage : {Stage::Installing, Stage::Interrupted, Stage::Failed, Stage::Installed}) {
     EXPECT_FALSE(on_trial(last_update(stage), before, "second")) << name_of(stage);
@@ -61,7 +61,7 @@ TEST(LastUpdate, InterruptedIsOverInThisOrTheNextBoot) {
 }
 
 TEST(LastUpdate, FinishedByRaucWaitsForTheRestart) {
-  Running finished = kOld;
+  RunningSystem finished = kOld;
   finished.other_next = true;
   for (const Stage stage : {Stage::Installing, Stage::Interrupted, Stage::Failed}) {
     const LastUpdate whole = settle_update(last_update(stage), finished, "first");
@@ -74,7 +74,7 @@ TEST(LastUpdate, FinishedByRaucWaitsForTheRestart) {
 
 TEST(LastUpdate, EndedStaysUnchanged) {
   for (const Stage stage : {Stage::None, Stage::Good}) {
-    for (const Running& running : {kOld, kNew}) {
+    for (const RunningSystem& running : {kOld, kNew}) {
       EXPECT_EQ(settle_update(last_update(stage), running, "third"), last_update(stage)) << name_of(stage);
       EXPECT_FALSE(on_trial(last_update(stage), running, "third")) << name_of(stage);
     }
@@ -84,41 +84,41 @@ TEST(LastUpdate, EndedStaysUnchanged) {
   }
 }
 
-const Proven kNone, kA = {"A", "0.2.0"};
-const Running kRunsA = {"adit-board", "0.2.0", "A", "B"}, kRunsB = {"adit-board", "0.1.0", "B", "A"};
+const ProvenSlot kNone, kA = {"A", "0.2.0"};
+const RunningSystem kRunsA = {"adit-board", "0.2.0", "A", "B"}, kRunsB = {"adit-board", "0.1.0", "B", "A"};
 
 TEST(ProvenSlot, IsTheRunningSlotIfUnknown) {
-  EXPECT_EQ(proven_now(kNone, kRunsB, false), (Proven{"B", "0.1.0"}));
+  EXPECT_EQ(proven_now(kNone, kRunsB, false), (ProvenSlot{"B", "0.1.0"}));
 }
 
 TEST(ProvenSlot, FollowsANewVersionOfItsSlot) {
-  Running newer = kRunsA;
+  RunningSystem newer = kRunsA;
   newer.version = "0.3.0";
-  EXPECT_EQ(proven_now(kA, newer, false), (Proven{"A", "0.3.0"}));
+  EXPECT_EQ(proven_now(kA, newer, false), (ProvenSlot{"A", "0.3.0"}));
 }
 
 TEST(ProvenSlot, FollowsASlotOnlyAfterItsTrial) {
   EXPECT_EQ(proven_now(kA, kRunsB, false), kA);
-  EXPECT_EQ(proven_now(kA, kRunsB, true), (Proven{"B", "0.1.0"}));
+  EXPECT_EQ(proven_now(kA, kRunsB, true), (ProvenSlot{"B", "0.1.0"}));
 }
 
 TEST(ProvenSlot, UnexpectedSlotIsReportedWithTheReason) {
   EXPECT_EQ(
-      stray(kA, kRunsB, false),
+      slot_warning(kA, kRunsB, false),
       "slot B is running, with 0.1.0, not slot A with 0.2.0, because that slot has used up its starts, by "
       "power cuts or because it does not come up");
-  Running chosen = kRunsB;
+  RunningSystem chosen = kRunsB;
   chosen.other_good = true;
   EXPECT_EQ(
-      stray(kA, chosen, false),
+      slot_warning(kA, chosen, false),
       "slot B is running, with 0.1.0, not slot A with 0.2.0, although that slot has starts left: a user "
       "chose the running slot, or the boot loader lost its counts");
 }
 
 TEST(ProvenSlot, ExpectedSlotAndTrialAreNotReported) {
-  EXPECT_EQ(stray(kA, kRunsA, false), "");
-  EXPECT_EQ(stray(kA, kRunsB, true), "");
-  EXPECT_EQ(stray(kNone, kRunsB, false), "");
+  EXPECT_EQ(slot_warning(kA, kRunsA, false), "");
+  EXPECT_EQ(slot_warning(kA, kRunsB, true), "");
+  EXPECT_EQ(slot_warning(kNone, kRunsB, false), "");
 }
 
 }  // namespace

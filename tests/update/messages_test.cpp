@@ -26,7 +26,7 @@ Status a_status() {
 }
 
 TEST(Messages, ReadBackTheSame) {
-  for (const auto what : {Request::What::Install, Request::What::Stick, Request::What::Restart}) {
+  for (const auto what : {Request::Command::Install, Request::Command::Stick, Request::Command::Restart}) {
     const auto request = codec::read_file<Request>(codec::write_file(Request{kNonce, what, true}));
     ASSERT_TRUE(request) << request.error();
     EXPECT_EQ(request->nonce, kNonce);
@@ -49,7 +49,7 @@ TEST(Messages, ReadBackTheSame) {
 }
 
 TEST(Messages, OutsideTheirBoundsAreRejected) {
-  json request = json::parse(codec::write_file(Request{kNonce, Request::What::Install, false}));
+  json request = json::parse(codec::write_file(Request{kNonce, Request::Command::Install, false}));
   request["what"] = "erase";
   EXPECT_THAT(codec::read_file<Request>(request.dump()).error(),
               HasSubstr("install, stick, restart, back or stay"));

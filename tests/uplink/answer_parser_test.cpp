@@ -115,7 +115,7 @@ TEST_P(AnswerParserCases, AreReadTheSameInAnyPieces) {
     // If the bytes were cut right after the answer, the parser has not seen the rest.
     const bool saw_all = portion > c.bytes.size();
     if (saw_all || c.keeps_alive) {
-      EXPECT_EQ(parser.may_keep_alive(), c.keeps_alive);
+      EXPECT_EQ(parser.can_keep_alive(), c.keeps_alive);
     }
     const Answered answered = parser.take_answer();
     EXPECT_EQ(answered.status, c.status);

@@ -37,7 +37,7 @@ class TwoRequests : protected StandingTime, public Asking {
   /// Waits until the first request has arrived and the next has a connection.
   bool one_has_arrived() {
     send(post("first"));
-    connections_.get_ready();
+    connections_.preconnect();
     return loop::turn_until(loop_, [&] { return connections_.has_arrived() && connections_.is_ready(); });
   }
 
@@ -70,7 +70,7 @@ TEST_F(TwoRequests, ThirdGoesAheadOfTheSecond) {
   send(post("second"));
   let_.release();
   ASSERT_TRUE(is_told(0));
-  connections_.get_ready();
+  connections_.preconnect();
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return connections_.has_arrived() && connections_.is_ready(); }));
   send(post("third"));
   let_.release(2);
@@ -113,7 +113,7 @@ TEST_F(TwoRequests, RefusedSecondConnectionLeavesOneRequest) {
   Connections connections(loop_, closed.endpoint(), token(), std::make_shared<Server>(loop_), [] {});
   bool told = false;
   connections.send(post("first"), [&](const Outcome&) { told = true; });
-  connections.get_ready();
+  connections.preconnect();
   EXPECT_FALSE(connections.is_ready());
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return told; }));
   EXPECT_FALSE(connections.busy());
@@ -125,11 +125,11 @@ TEST_F(TwoRequests, SecondConnectionIsTriedOncePerRequest) {
   Connections connections(loop_, hangs_up.endpoint(), token(), std::make_shared<Server>(loop_), [] {});
   bool told = false;
   connections.send(post("first"), [&](const Outcome&) { told = true; });
-  connections.get_ready();
+  connections.preconnect();
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return connections.has_arrived().has_value(); }));
   let_.release();
   ASSERT_TRUE(loop::turn_until(loop_, [&] {
-    if (!told) connections.get_ready();
+    if (!told) connections.preconnect();
     return told;
   }));
   EXPECT_LE(hangs_up.begun(), 2);

@@ -61,7 +61,8 @@ def shown(box):
 def certificate_of(box):
     """The view of the box's certificate, once it has one and the TLS server uses it."""
     view = wait_until(lambda: shown(box)["offered"] and shown(box), "the box to have a certificate")
-    wait_until(lambda: fingerprint(ssl.PEM_cert_to_DER_cert(box.certificate.read_text())) == view["fingerprint"], "the TLS server to use it")
+    wait_until(lambda: fingerprint(ssl.PEM_cert_to_DER_cert(box.certificate.read_text())) == view["fingerprint"], "the TLS server to use it",
+               tolerates=ValueError)  # while it is being written
     return view
 
 

@@ -77,14 +77,14 @@ Accounts::Accounts(const loop::Loop& loop, loop::Workers& workers, loop::Writer&
   if (on_label) {
     host::log(Level::Notice, "no password is set: the page asks for the code on the label");
   } else if (code_) {
-    host::tell_console(Level::Notice, "no password is set: the page asks for this code",
-                       {{"code", code_->reveal()}});
+    host::log_to_console(Level::Notice, "no password is set: the page asks for this code",
+                         {{"code", code_->reveal()}});
   }
 }
 
 /// The code of an earlier start, or a new one. std::nullopt if the file cannot be read.
 std::optional<icd::BearerToken> Accounts::kept_code() {
-  const auto kept = host::may_exist(code_file()) ? host::read_file(code_file()) : "";
+  const auto kept = host::can_exist(code_file()) ? host::read_file(code_file()) : "";
   if (!kept) {
     unread_ = kUnread + kept.error();
     return std::nullopt;

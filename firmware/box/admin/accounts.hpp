@@ -43,7 +43,7 @@ class Accounts final : public api::Keys {
            std::function<void(icd::Checked<void>)> done) override;
   access::Sessions& sessions() override { return sessions_.sessions(); }
   access::Devices& devices() override { return devices_; }
-  bool somebody_at_box() const override { return at_box_.remaining(loop_.now()).has_value(); }
+  bool is_operator_at_box() const override { return at_box_.remaining(loop_.now()).has_value(); }
   access::Secret draw() override;
 
   /// The code for the first password, if none was set at the start.
@@ -51,7 +51,7 @@ class Accounts final : public api::Keys {
 
   /// Call only for the box's own button.
   void open_set_up();
-  void button_pressed() { at_box_.open(loop_.now(), kAtBox); }
+  void on_button_press() { at_box_.open(loop_.now(), kAtBox); }
   std::optional<access::Duration> set_up_left() const { return set_up_.remaining(loop_.now()); }
 
  private:

@@ -10,13 +10,13 @@
 namespace adit::admin {
 
 Certificate::Certificate(loop::Loop& loop, const std::string& state_folder, const std::string& runtime_folder,
-                         Asked asked, const std::string& units)
+                         Callbacks asked, const std::string& units)
     : loop_(loop),
       adit_certificate_(loop, "adit-certificate", state_folder, runtime_folder + '/' + kStatusFolder,
                         kTakenUpWithin, units),
       asked_(std::move(asked)),
       address_until_(loop.now() + kAddressWithin),
-      timer_(loop.timer([this] { look(); })) {
+      timer_(loop.timer([this] { poll(); })) {
   read();
 }
 
@@ -38,16 +38,16 @@ api::CertificateView Certificate::state() const {
   return view;
 }
 
-void Certificate::take(const std::string& pem, Done done) {
+void Certificate::replace(const std::string& pem, Done done) {
   if (auto free = check_free(); !free) return done(std::move(free));
   if (const auto left = host::write_file(uploaded_file(), pem, host::kOursAlone); !left)
     return done(icd::refuse(icd::Status::ServiceUnavailable, left.error()));
-  ask(What::Take, std::move(done));
+  ask(Command::Take, std::move(done));
 }
 
 void Certificate::make(Done done) {
   if (auto free = check_free(); !free) return done(std::move(free));
-  ask(What::Make, std::move(done));
+  ask(Command::Make, std::move(done));
 }
 
 icd::Checked<void> Certificate::check_free() const {
@@ -56,7 +56,7 @@ icd::Checked<void> Certificate::check_free() const {
   return {};
 }
 
-void Certificate::ask(What what, Done done) {
+void Certificate::ask(Command what, Done done) {
   done_ = std::move(done);
   const access::CertificateRequest request{
       .nonce = host::draw_nonce(), .what = what, .address = asked_.address()};
@@ -65,11 +65,11 @@ void Certificate::ask(What what, Done done) {
   timer_.call_at(loop_.now() + kLook);
 }
 
-void Certificate::look() {
+void Certificate::poll() {
   if (!done_) return;
   if (adit_certificate_.check()) return finish(icd::conflict(adit_certificate_.trouble()));
   const auto status = adit_certificate_.status();
-  if (!status || adit_certificate_.waits()) return timer_.call_at(loop_.now() + kLook);
+  if (!status || adit_certificate_.is_pending()) return timer_.call_at(loop_.now() + kLook);
   if (status->refusal.empty()) return finish({});
   finish(icd::refuse(icd::Status::UnprocessableEntity, status->refusal));
 }
@@ -91,7 +91,7 @@ void Certificate::every_second() {
   if (kept_at_ && loop_.now() < *kept_at_ + kAskAgain) return;
   if (fingerprint_.empty() && loop_.now() < address_until_ && asked_.address().empty()) return;
   kept_at_ = loop_.now();
-  ask(What::Keep, [](const icd::Checked<void>& done) {
+  ask(Command::Keep, [](const icd::Checked<void>& done) {
     if (!done) host::log(host::Level::Error, "the page has no certificate", {{"why", done.error().sentence}});
   });
 }

@@ -27,7 +27,7 @@ class Certificate final : public api::Certificate {
   static constexpr const char* kStatusFolder = "certificate";
 
   /// Functions of the gateway, called on the loop.
-  struct Asked {
+  struct Callbacks {
     /// Whether the TLS server can pass connections to aditd.
     std::function<bool()> serves_tls;
     /// The box's address for the team, or "".
@@ -37,28 +37,28 @@ class Certificate final : public api::Certificate {
   /// `state_folder`: for requests. `runtime_folder`: see kStatusFolder. `units`: as host::kStartedAtBoot.
   /// `loop` must outlive this object.
   Certificate(loop::Loop& loop, const std::string& state_folder, const std::string& runtime_folder,
-              Asked asked, const std::string& units = host::kStartedAtBoot);
+              Callbacks asked, const std::string& units = host::kStartedAtBoot);
 
   api::CertificateView state() const override;
-  void take(const std::string& pem, Done done) override;
+  void replace(const std::string& pem, Done done) override;
   void make(Done done) override;
 
   /// Call each second. Requests a certificate if there is none, and has the TLS server use the one on disk.
   void every_second();
 
  private:
-  using What = access::CertificateRequest::What;
+  using Command = access::CertificateRequest::Command;
   /// Why no request can be made now.
   icd::Checked<void> check_free() const;
-  void ask(What what, Done done);
-  void look();
+  void ask(Command what, Done done);
+  void poll();
   void finish(const icd::Checked<void>& done);
   std::string uploaded_file() const { return adit_certificate_.requests() + '/' + access::kUploadedFile; }
   void read();
 
   loop::Loop& loop_;
   host::RootProgram<access::CertificateStatus> adit_certificate_;
-  Asked asked_;
+  Callbacks asked_;
   const loop::Instant address_until_;
   loop::Source timer_;
   std::string fingerprint_;  // of the certificate on disk; "": there is none, or it cannot be read

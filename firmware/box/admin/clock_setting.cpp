@@ -50,13 +50,13 @@ void NtpWatch::ask() {
   if (!socket_) {
     socket_ = connected_to(port_);
     if (!socket_) return;
-    answers_ = loop_.watch(socket_.get(), EPOLLIN, [this](std::uint32_t) { hear(); });
+    answers_ = loop_.watch(socket_.get(), EPOLLIN, [this](std::uint32_t) { read_answers(); });
   }
   const auto request = clock::tracking_request(++number_);
   (void)send(socket_.get(), request.data(), request.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
 }
 
-void NtpWatch::hear() {
+void NtpWatch::read_answers() {
   std::array<std::uint8_t, 512> bytes{};
   constexpr int kAtOnce = 8;
   for (int i = 0; i < kAtOnce; ++i) {
@@ -82,12 +82,12 @@ api::ClockView ClockSetting::state() const {
                       .managed = status != nullptr,
                       .why = adit_clock_.status_error(),
                       .refusal = trouble()};
-  view.ntp = ntp_said();
+  view.ntp = ntp_text();
   view.is_kept = is_kept_by_ntp();
   view.is_set = is_set().value_or(!adit_clock_.is_starting());
   if (!status) return view;
   view.source = status->source;
-  if (!adit_clock_.waits() && view.refusal.empty()) view.refusal = status->refusal;
+  if (!adit_clock_.is_pending() && view.refusal.empty()) view.refusal = status->refusal;
   return view;
 }
 
@@ -97,7 +97,7 @@ std::optional<bool> ClockSetting::is_set() const {
   return loop_.wall_now() < clock::kEarliest ? std::optional(false) : std::nullopt;
 }
 
-bool ClockSetting::is_told() const {
+bool ClockSetting::has_source() const {
   const auto status = adit_clock_.status();
   return status && clock::is_set(status->source) && status->source != clock::Source::Chip;
 }
@@ -117,7 +117,7 @@ icd::Checked<void> ClockSetting::set_clock(double time) {
 
 void ClockSetting::on_offered(const clock::Offer& offer) {
   const auto status = adit_clock_.status();
-  if (!status || adit_clock_.waits()) return;
+  if (!status || adit_clock_.is_pending()) return;
   const bool came_to_nothing = !trouble().empty() || !status->refusal.empty();
   if (came_to_nothing && loop_.now() < asked_at_ + kAskAgain) return;  // set_clock() has no such limit
   const double of_the_system = loop_.wall_now() - loop_.wall_offset();
@@ -156,7 +156,7 @@ void ClockSetting::ask_for_ntp() {
   const bool has_been = ntp_asked_at_ != loop::Instant{};
   if (has_been && loop_.now() < ntp_asked_at_ + kAskAgain) return;
   ntp_asked_at_ = loop_.now();
-  host::log_failure(host::Level::Error, "cannot request NTP", adit_clock_.leave(clock::kNtpFile, ntp_));
+  host::log_failure(host::Level::Error, "cannot request NTP", adit_clock_.submit(clock::kNtpFile, ntp_));
 }
 
 /// Offers the time until adit-clock has set it. Then chronyd keeps the clock by itself.
@@ -185,7 +185,7 @@ std::string ClockSetting::ntp_trouble() const {
       status->trusted_source() == clock::Source::Ntp ? ", or its time is off by more than a minute" : "");
 }
 
-std::string ClockSetting::ntp_said() const {
+std::string ClockSetting::ntp_text() const {
   if (auto trouble = ntp_trouble(); !trouble.empty()) return trouble;
   std::string said;
   if (!ntp_.server.empty())

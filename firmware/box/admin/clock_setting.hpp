@@ -31,7 +31,7 @@ class NtpWatch {
 
  private:
   void ask();
-  void hear();
+  void read_answers();
   double system_now() const { return loop_.wall_now() - loop_.wall_offset(); }
 
   loop::Loop& loop_;
@@ -73,7 +73,7 @@ class ClockSetting final : public api::Clock {
   /// std::nullopt: adit-clock is starting or does not run here, and the time may be right.
   std::optional<bool> is_set() const;
   /// Whether another source than the box's own clock has set the time of day.
-  bool is_told() const;
+  bool has_source() const;
   /// Why NTP does not follow the settings, as a sentence; or "".
   std::string ntp_trouble() const;
 
@@ -84,7 +84,7 @@ class ClockSetting final : public api::Clock {
   void ask_for_ntp();
   void follow_ntp();
   bool is_kept_by_ntp() const;
-  std::string ntp_said() const;
+  std::string ntp_text() const;
 
   loop::Loop& loop_;
   host::RootProgram<clock::Status> adit_clock_;

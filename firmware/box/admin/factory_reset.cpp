@@ -29,8 +29,8 @@ std::expected<bool, std::string> FactoryReset::finish() {
   if (unknown) return std::unexpected(unread_ = marker_path() + ": " + unknown.message());
   if (!is_begun) return false;
   ADIT_TRY(store_.forget());
-  const network::Forget forget{host::draw_nonce()};
-  ADIT_TRY(host::leave_request(state_, network::kForgetFile, forget));
+  const network::FactoryRequest forget{host::draw_nonce()};
+  ADIT_TRY(host::write_request(state_, network::kForgetFile, forget));
   for (const char* kept : {"journal", "waiting", "rejected"}) {
     std::error_code error;
     std::filesystem::remove_all(runtime_ + '/' + kept, error);
@@ -42,7 +42,7 @@ std::expected<bool, std::string> FactoryReset::finish() {
   if (error) return std::unexpected("cannot remove " + state_ + "/runs: " + error.message());
   // Removes the passwords and the mark last, so that an unfinished reset does not look finished.
   for (const std::string& file :
-       {runtime_ + '/' + SessionKeeper::kFile, state_ + '/' + AcknowledgedFile::kFile,
+       {runtime_ + '/' + SessionKeeper::kFile, state_ + '/' + AcknowledgementFile::kFile,
         state_ + '/' + access::kCertificateFile, state_ + '/' + access::kCertificateFile + host::kDamaged,
         state_ + '/' + access::kUploadedFile, state_ + '/' + Accounts::kDevicesFile,
         state_ + '/' + Accounts::kCodeFile, state_ + '/' + Accounts::kFile,

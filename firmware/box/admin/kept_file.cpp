@@ -8,10 +8,10 @@
 
 namespace adit::admin {
 
-AcknowledgedFile::AcknowledgedFile(const std::string& state_folder, loop::Writer& writer)
+AcknowledgementFile::AcknowledgementFile(const std::string& state_folder, loop::Writer& writer)
     : file_(state_folder + '/' + kFile), writer_(writer) {}
 
-std::vector<alarms::Acknowledged> AcknowledgedFile::read() {
+std::vector<alarms::Acknowledgement> AcknowledgementFile::read() {
   auto read = read_kept_file(file_, &alarms::read_acknowledged, unread_);
   if (!read) {
     host::log(host::Level::Warning, "cannot read the acknowledged alarms: no alarm is acknowledged",
@@ -22,7 +22,7 @@ std::vector<alarms::Acknowledged> AcknowledgedFile::read() {
   return *std::move(read);
 }
 
-void AcknowledgedFile::keep(std::vector<alarms::Acknowledged> all) {
+void AcknowledgementFile::keep(std::vector<alarms::Acknowledgement> all) {
   if (all == kept_) return;
   kept_ = std::move(all);
   if (!unread_.empty()) return;

@@ -18,7 +18,7 @@ namespace adit::admin {
 template <class Read>
 auto read_kept_file(const std::string& file, Read read, std::string& unread)
     -> decltype(read(std::string_view())) {
-  if (!host::may_exist(file)) return {};
+  if (!host::can_exist(file)) return {};
   auto kept = host::parse_kept(file, read);
   if (!kept) return std::unexpected(unread = kept.error());
   if (!*kept) return std::unexpected(file + ": " + kept->error());
@@ -28,21 +28,21 @@ auto read_kept_file(const std::string& file, Read read, std::string& unread)
 /// Stores the acknowledged alarms in a file that only aditd can read, across restarts. If the file is damaged
 /// or unreadable, logs it and acknowledges no alarm, so the light blinks. An unreadable file stays unchanged
 /// until the next start.
-class AcknowledgedFile {
+class AcknowledgementFile {
  public:
   static constexpr const char* kFile = "acknowledged.json";  // in the state directory
 
   /// `writer` must outlive this object.
-  AcknowledgedFile(const std::string& state_folder, loop::Writer& writer);
+  AcknowledgementFile(const std::string& state_folder, loop::Writer& writer);
 
-  std::vector<alarms::Acknowledged> read();
+  std::vector<alarms::Acknowledgement> read();
   /// Stores a changed list in the writer thread, without waiting.
-  void keep(std::vector<alarms::Acknowledged> all);
+  void keep(std::vector<alarms::Acknowledgement> all);
 
  private:
   std::string file_, unread_;
   loop::Writer& writer_;
-  std::vector<alarms::Acknowledged> kept_;
+  std::vector<alarms::Acknowledgement> kept_;
   std::shared_ptr<bool> failed_ = std::make_shared<bool>(false);  // used by the writer thread
 };
 

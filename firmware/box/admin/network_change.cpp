@@ -50,7 +50,7 @@ void NetworkChange::every_second() {
   lead_to_endpoints();
 }
 
-std::string NetworkChange::hindrance() const {
+std::string NetworkChange::refusal_reason() const {
   const std::string& team = settings_.team.interface;
   const std::string& post = settings_.command_post.interface;
   if (team.empty() || post.empty()) {
@@ -69,7 +69,7 @@ std::string NetworkChange::hindrance() const {
 std::optional<network::Pending> NetworkChange::pending() const {
   const auto status = adit_network_.status();
   if (status && status->pending) return status->pending;
-  if (!adit_network_.waits()) return std::nullopt;
+  if (!adit_network_.is_pending()) return std::nullopt;
   return network::Pending{wanted_.nonce, wanted_.numbers, wanted_at_ + wanted_.confirm_within,
                           wanted_.confirm_within};
 }
@@ -90,7 +90,7 @@ std::expected<std::optional<network::Numbers>, std::string> NetworkChange::prese
 api::NetworkView NetworkChange::state() const {
   api::NetworkView view;
   view.now = loop_.wall_now();
-  view.why = hindrance();
+  view.why = refusal_reason();
   view.runs_here = adit_network_.runs_here();
   view.team_interface = settings_.team.interface;
   view.command_post_interface = settings_.command_post.interface;
@@ -124,7 +124,7 @@ api::NetworkView NetworkChange::state() const {
   view.last_why = adit_network_.trouble();
   const auto status = adit_network_.status();
   if (!view.last_why.empty()) {
-    view.last = name_of(network::Ended::Reverted);
+    view.last = name_of(network::ChangeOutcome::Reverted);
   } else if (status) {
     view.last = name_of(status->ended);
     view.last_why = status->why;
@@ -148,7 +148,7 @@ network::Findings NetworkChange::check(const network::Numbers& wanted, const std
 icd::Checked<void> NetworkChange::change(const network::Numbers& wanted) {
   if (pending()) return icd::conflict("another change is not yet confirmed or reverted");
   if (!adit_network_.status()) return adit_network_.refuse();
-  if (const std::string why = hindrance(); !why.empty()) return icd::conflict(why);
+  if (const std::string why = refusal_reason(); !why.empty()) return icd::conflict(why);
   wanted_ = {host::draw_nonce(), settings_.network.confirm_within, wanted};
   wanted_at_ = loop_.now();
   if (const auto asked = adit_network_.ask(network::kWantedFile, wanted_); !asked)
@@ -162,7 +162,7 @@ icd::Checked<void> NetworkChange::confirm(const std::string& local) {
   const auto waits = pending();
   if (!waits) return icd::conflict("there is no change to confirm");
   if (auto may = check_confirmable(waits->wanted, local); !may) return may;
-  return say(network::Decision::What::Confirm, *waits);
+  return send_decision(network::Decision::Command::Confirm, *waits);
 }
 
 /// An address from DHCP or a link-local one is not known in advance. Any address but the old one confirms
@@ -172,7 +172,7 @@ icd::Checked<void> NetworkChange::check_confirmable(const network::Numbers& want
   const bool fixed = wanted.mode == network::Mode::Static;
   const auto kept = this->confirmed_numbers();
   const bool stays = kept && kept->mode == wanted.mode && kept->team.address == wanted.team.address;
-  if ((stays || !fixed) && adit_network_.waits())
+  if ((stays || !fixed) && adit_network_.is_pending())
     return icd::conflict("the change is not applied yet: try again in a few seconds");
   const bool new_one = fixed ? local == settings::ipv4_text(wanted.team.address)
                              : !kept || local != settings::ipv4_text(kept->team.address);
@@ -182,7 +182,7 @@ icd::Checked<void> NetworkChange::check_confirmable(const network::Numbers& want
 }
 
 void NetworkChange::lead_to_endpoints() {
-  if (!hindrance().empty()) return;
+  if (!refusal_reason().empty()) return;
   network::Endpoints all;
   const auto add = [&all](const settings::Address& address) {
     if (const auto number = settings::ipv4_of(address.address)) all.addresses.push_back(*number);
@@ -200,7 +200,7 @@ void NetworkChange::lead_to_endpoints() {
   if (!status || status->endpoints == all || (told_at_ && loop_.now() < *told_at_ + kTellAgain)) return;
   told_at_ = loop_.now();
   host::log_failure(host::Level::Error, "cannot tell adit-network the endpoints",
-                    adit_network_.leave(network::kEndpointsFile, all));
+                    adit_network_.submit(network::kEndpointsFile, all));
 }
 
 std::expected<std::string, std::string> NetworkChange::next_hop(const settings::Address& endpoint) const {
@@ -219,13 +219,13 @@ std::expected<network::Probe, std::string> NetworkChange::probe(const std::strin
     return std::unexpected("adit-network has " + status->command_post_interface + " instead");
   const auto hop = ADIT_TRY(next_hop(endpoint));
   network::Probe probe{host::draw_nonce(), hop};
-  ADIT_TRY(adit_network_.leave(network::kProbeFile, probe));
+  ADIT_TRY(adit_network_.submit(network::kProbeFile, probe));
   return probe;
 }
 
-std::expected<std::optional<network::Probed>, std::string> NetworkChange::answer_to(
+std::expected<std::optional<network::ProbeResult>, std::string> NetworkChange::answer_to(
     const network::Probe& probe) const {
-  auto read = host::read_row<network::Probed>(adit_network_.directory() + '/' + network::kProbedFile);
+  auto read = host::read_row<network::ProbeResult>(adit_network_.directory() + '/' + network::kProbedFile);
   if (read && *read && (*read)->nonce != probe.nonce) read->reset();
   return read;
 }
@@ -233,11 +233,12 @@ std::expected<std::optional<network::Probed>, std::string> NetworkChange::answer
 icd::Checked<void> NetworkChange::revert() {
   const auto waits = pending();
   if (!waits) return icd::conflict("there is no change to revert");
-  return say(network::Decision::What::Revert, *waits);
+  return send_decision(network::Decision::Command::Revert, *waits);
 }
 
-icd::Checked<void> NetworkChange::say(network::Decision::What what, const network::Pending& pending) const {
-  if (const auto asked = adit_network_.leave(network::kWordFile, network::Decision{pending.nonce, what});
+icd::Checked<void> NetworkChange::send_decision(network::Decision::Command what,
+                                                const network::Pending& pending) const {
+  if (const auto asked = adit_network_.submit(network::kWordFile, network::Decision{pending.nonce, what});
       !asked) {
     return icd::conflict("cannot tell adit-network: " + asked.error());
   }
@@ -284,7 +285,7 @@ facts::Network NetworkChange::fact() const {
   const auto waits = pending();
   const auto kept = this->confirmed_numbers();
   const bool bare = kept && kept->command_post.empty();
-  fact.no_address = !waits && bare && hindrance().empty();
+  fact.no_address = !waits && bare && refusal_reason().empty();
   if (waits) {
     fact.confirm_within = std::chrono::duration<double>(waits->until - loop_.now()).count();
     fact.page = page_at(waits->wanted);

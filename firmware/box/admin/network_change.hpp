@@ -47,7 +47,8 @@ class NetworkChange final : public api::Network {
   std::expected<network::Probe, std::string> probe(const std::string& interface,
                                                    const settings::Address& endpoint) const;
   /// The answer to `probe`. nullopt: not yet there. Error: it cannot be read.
-  std::expected<std::optional<network::Probed>, std::string> answer_to(const network::Probe& probe) const;
+  std::expected<std::optional<network::ProbeResult>, std::string> answer_to(
+      const network::Probe& probe) const;
 
   /// Input of the alarm rules.
   facts::Network fact() const;
@@ -60,7 +61,7 @@ class NetworkChange final : public api::Network {
   std::optional<facts::SwappedAddress> swapped_address() const;
   std::optional<facts::AddressConflict> address_conflict(const std::string& interface, bool is_team) const;
   /// Why changes are impossible here, or "".
-  std::string hindrance() const;
+  std::string refusal_reason() const;
   std::string page_at(const network::Numbers& numbers) const;
   std::optional<network::Pending> pending() const;
   std::optional<network::Numbers> confirmed_numbers() const;
@@ -68,7 +69,7 @@ class NetworkChange final : public api::Network {
   std::expected<std::optional<network::Numbers>, std::string> present() const;
   /// Accepts `local` if a change to `wanted` may be confirmed from that address.
   icd::Checked<void> check_confirmable(const network::Numbers& wanted, const std::string& local) const;
-  icd::Checked<void> say(network::Decision::What what, const network::Pending& pending) const;
+  icd::Checked<void> send_decision(network::Decision::Command what, const network::Pending& pending) const;
 
   loop::Loop& loop_;
   const settings::Settings& settings_;
@@ -77,7 +78,7 @@ class NetworkChange final : public api::Network {
   mutable network::AddressConflicts taken_;
   mutable std::string taken_trouble_, hop_trouble_;  // the last read errors, logged once
   mutable std::optional<loop::Instant> taken_read_at_;
-  network::Wanted wanted_;  // last request
+  network::ChangeRequest wanted_;  // last request
   loop::Instant wanted_at_{};
   std::optional<loop::Instant> told_at_;  // last request for routes
 };

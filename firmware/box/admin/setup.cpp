@@ -11,7 +11,7 @@ namespace {
 
 using settings::Settings;
 
-icd::Checked<void> being_applied() {
+icd::Checked<void> busy_refusal() {
   return icd::refuse(icd::Status::Conflict, "another change is being applied: try again");
 }
 
@@ -25,7 +25,7 @@ std::optional<icd::BearerToken> token_for(const std::string& endpoint, const Set
   return secrets.token(has_own ? own : endpoint);
 }
 
-Setup::Setup(Store& store, FactoryReset& reset, const Store::Loaded& loaded, std::string trouble,
+Setup::Setup(Store& store, FactoryReset& reset, const Store::LoadedSettings& loaded, std::string trouble,
              Meaning for_reports, std::function<void()> apply, std::function<void()> restart)
     : store_(store),
       reset_(reset),
@@ -35,12 +35,12 @@ Setup::Setup(Store& store, FactoryReset& reset, const Store::Loaded& loaded, std
   set_running(loaded, std::move(trouble));
 }
 
-void Setup::set_running(const Store::Loaded& loaded, std::string trouble) {
+void Setup::set_running(const Store::LoadedSettings& loaded, std::string trouble) {
   settings_ = loaded.settings;
   saved_ = loaded.saved;
   trouble_ = std::move(trouble);
   tokens_.clear();
-  auto odd = loaded.secrets.odd_tokens();
+  auto odd = loaded.secrets.token_warnings();
   for (const std::string& name : token_names(settings_)) {
     const bool is_set = loaded.secrets.tokens.contains(name);
     if (is_set && odd.contains(name)) host::log(host::Level::Warning, odd[name]);
@@ -90,7 +90,7 @@ icd::Checked<void> Setup::apply_if_written(const std::expected<void, std::string
 }
 
 icd::Checked<void> Setup::save(const Settings& next) {
-  if (applying_) return being_applied();
+  if (applying_) return busy_refusal();
   const auto changes = settings::changes(settings_, next);
   if (changes.empty() && is_kept_ && store_.unread().empty()) return {};
   for (const settings::Change& change : changes) {
@@ -102,12 +102,12 @@ icd::Checked<void> Setup::save(const Settings& next) {
 }
 
 icd::Checked<void> Setup::set_token(const std::string& name, const std::optional<icd::BearerToken>& token) {
-  if (applying_) return being_applied();
+  if (applying_) return busy_refusal();
   return apply_if_written(store_.save_token(name, token), "a token", apply_);
 }
 
 icd::Checked<void> Setup::reset() {
-  if (applying_) return being_applied();
+  if (applying_) return busy_refusal();
   return apply_if_written(reset_.begin(), "a factory reset", restart_);
 }
 

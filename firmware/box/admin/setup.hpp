@@ -19,11 +19,11 @@ class Setup final : public api::Setup {
 
   /// `apply` is called after a change is on disk, and must cause set_running(). `restart` replaces the
   /// gateway. `store` and `reset` must outlive this object.
-  Setup(Store& store, FactoryReset& reset, const Store::Loaded& loaded, std::string trouble,
+  Setup(Store& store, FactoryReset& reset, const Store::LoadedSettings& loaded, std::string trouble,
         Meaning for_reports, std::function<void()> apply, std::function<void()> restart);
 
   /// Reports the configuration in use after a change was applied or reverted. `trouble`: see api::Setup.
-  void set_running(const Store::Loaded& loaded, std::string trouble);
+  void set_running(const Store::LoadedSettings& loaded, std::string trouble);
 
   const settings::Settings& settings() const override { return settings_; }
   bool is_saved() const override { return saved_; }

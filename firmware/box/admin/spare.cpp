@@ -23,15 +23,15 @@ using icd::Status;
 constexpr const char* kNotHere = "USB sticks are not available: adit-spare does not run";
 
 /// The action to show until adit-spare reports its own.
-const char* pending_action(spare::StickRequest::What what) {
-  return what == spare::StickRequest::What::Write ? "writing" : "reading";
+const char* pending_action(spare::StickRequest::Command what) {
+  return what == spare::StickRequest::Command::Write ? "writing" : "reading";
 }
 
 /// Reads from adit-spare's directory, in memory.
 std::expected<std::string, std::string> read_from_stick(const std::string& path) {
   auto file = host::slurp(path, spare::kLargestExport);
   if (!file)
-    return std::unexpected("cannot read the export from the stick: " + host::trouble(path, file.error()));
+    return std::unexpected("cannot read the export from the stick: " + host::path_error(path, file.error()));
   return std::move(file->text);
 }
 
@@ -42,7 +42,7 @@ SpareStick::SpareStick(loop::Loop& loop, const std::string& state_folder, const 
     : loop_(loop),
       adit_spare_(loop, "adit-spare", state_folder, status_folder, kTakenUpWithin),
       taken_(std::move(taken)),
-      timer_(loop.timer([this] { look(); })) {}
+      timer_(loop.timer([this] { poll(); })) {}
 
 std::optional<api::StickRow> SpareStick::view() const {
   if (!adit_spare_.runs_here()) return std::nullopt;
@@ -57,7 +57,7 @@ std::optional<api::StickRow> SpareStick::view() const {
   if (!now && !adit_spare_.is_starting()) row.unreadable = adit_spare_.status_error();
   if (!now) return row;
   for (const std::string& name : now->exports) {
-    spare::NamedFor named = spare::named_for(name);
+    spare::ExportName named = spare::named_for(name);
     row.exports.push_back({.name = name, .box = std::move(named.box), .at = named.at});
   }
   return row;
@@ -76,17 +76,17 @@ icd::Checked<void> SpareStick::write(const std::string& name, const std::string&
   if (const auto now = view(); now && !now->hindrance.empty()) return icd::conflict(now->hindrance);
   const auto left = host::write_file(stick_request_file(), file, host::kOursAlone);
   if (!left) return icd::refuse(Status::ServiceUnavailable, left.error());
-  return ask(What::Write, name);
+  return ask(Command::Write, name);
 }
 
 icd::Checked<void> SpareStick::request_import(const std::string& name) {
   if (!spare::is_file_name(name))
     return icd::refuse(Status::UnprocessableEntity, "name: expected the name of an export on the stick");
   ADIT_TRY(check_free());
-  return ask(What::Take, name);
+  return ask(Command::Take, name);
 }
 
-icd::Checked<void> SpareStick::ask(What what, const std::string& name) {
+icd::Checked<void> SpareStick::ask(Command what, const std::string& name) {
   const spare::StickRequest request{.nonce = host::draw_nonce(), .what = what, .name = name};
   if (const auto asked = adit_spare_.ask(spare::kStickRequestFile, request); !asked) {
     unlink(stick_request_file().c_str());
@@ -98,7 +98,7 @@ icd::Checked<void> SpareStick::ask(What what, const std::string& name) {
   return {};
 }
 
-void SpareStick::look() {
+void SpareStick::poll() {
   if (!asked_) return;
   if (adit_spare_.check()) {
     unlink(stick_request_file().c_str());
@@ -107,14 +107,14 @@ void SpareStick::look() {
     return;
   }
   const auto now = adit_spare_.status();
-  if (now && !adit_spare_.waits() && now->doing.empty()) return finish(*now);
+  if (now && !adit_spare_.is_pending() && now->doing.empty()) return finish(*now);
   timer_.call_at(loop_.now() + kLook);
 }
 
 void SpareStick::finish(const spare::StickStatus& status) {
-  const What what = *std::exchange(asked_, std::nullopt);
+  const Command what = *std::exchange(asked_, std::nullopt);
   refusal_ = status.refusal;
-  if (!refusal_.empty() || what == What::Write) return;
+  if (!refusal_.empty() || what == Command::Write) return;
   auto file = read_from_stick(adit_spare_.directory() + '/' + spare::kFromStickFile);
   if (!file) {
     refusal_ = std::move(file.error());
@@ -124,12 +124,12 @@ void SpareStick::finish(const spare::StickStatus& status) {
 }
 
 Spare::Spare(loop::Loop& loop, loop::Workers& workers, Takeover& takeover, std::string state_folder,
-             const std::string& status_folder, const std::string& stuck, Asked asked)
+             const std::string& status_folder, const std::string& stuck, Callbacks asked)
     : loop_(loop),
       workers_(workers),
       takeover_(takeover),
       state_(std::move(state_folder)),
-      stick_(loop, state_, status_folder, [this](std::string file) { taken_from_stick(std::move(file)); }),
+      stick_(loop, state_, status_folder, [this](std::string file) { on_stick_export(std::move(file)); }),
       stuck_(stuck),
       asked_(std::move(asked)),
       restart_(loop.timer([this] { asked_.restart(); })) {
@@ -176,7 +176,7 @@ api::SpareView Spare::state() const {
   if (file_.rest) view.since = file_.rest->since;
   if (view.standby && file_.rest) view.code = spare::code_text(file_.rest->code);
   if (!opened_) return view;
-  const spare::About& about = opened_->content.about;
+  const spare::ExportInfo& about = opened_->content.about;
   view.taken_in = {.name = about.name,
                    .version = about.version,
                    .at = about.at,
@@ -189,7 +189,7 @@ api::SpareView Spare::state() const {
   return view;
 }
 
-icd::Checked<void> Spare::stand_by() {
+icd::Checked<void> Spare::enter_standby() {
   if (!standby_.empty() || goes_on_standby_) return {};
   if (takes_over_) return icd::conflict("this box is taking over just now");
   SpareFile next = file_;
@@ -234,7 +234,7 @@ void Spare::export_to_stick(Done done) {
   });
 }
 
-void Spare::seal(const Named& done) {
+void Spare::seal(const SealCallback& done) {
   const auto refused = [&done](Status status, const std::string& why) { done(icd::refuse(status, why), ""); };
   if (!file_.rest || standby_.empty() || is_stuck())
     return refused(Status::Conflict, "this box is not on standby: only a box on standby can be exported");
@@ -261,13 +261,13 @@ void Spare::seal(const Named& done) {
       });
 }
 
-icd::Checked<void> Spare::take_from_stick(const std::string& name) {
+icd::Checked<void> Spare::import_from_stick(const std::string& name) {
   if (takes_over_) return icd::conflict("this box is taking over just now");
   return stick_.request_import(name);
 }
 
 /// Runs the checks of an upload.
-void Spare::taken_from_stick(std::string file) {
+void Spare::on_stick_export(std::string file) {
   host::log_failure(host::Level::Warning, "export from the stick rejected", import_file(std::move(file)));
 }
 
@@ -298,14 +298,14 @@ void Spare::open(const std::string& code, Done done) {
 }
 
 /// After a wrong code, the user may try again.
-icd::Checked<Spare::Opened> Spare::check(const std::expected<std::string, std::string>& text) const {
+icd::Checked<Spare::OpenedExport> Spare::check(const std::expected<std::string, std::string>& text) const {
   if (!text) return icd::refuse(Status::UnprocessableEntity, text.error());
   auto content = spare::read(*text);
   if (!content) return icd::refuse(Status::UnprocessableEntity, content.error());
-  if (std::string why = file_.hindrance(content->about); !why.empty()) return icd::conflict(why);
+  if (std::string why = file_.refusal_reason(content->about); !why.empty()) return icd::conflict(why);
   auto settings = takeover_.check(*content);
   if (!settings) return icd::refuse(Status::UnprocessableEntity, settings.error());
-  return Opened{*std::move(content), *std::move(settings)};
+  return OpenedExport{*std::move(content), *std::move(settings)};
 }
 
 /// Also abandons a takeover that cannot be finished.

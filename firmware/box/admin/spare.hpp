@@ -39,9 +39,9 @@ class SpareStick {
   icd::Checked<void> request_import(const std::string& name);
 
  private:
-  using What = spare::StickRequest::What;
-  icd::Checked<void> ask(What what, const std::string& name);
-  void look();
+  using Command = spare::StickRequest::Command;
+  icd::Checked<void> ask(Command what, const std::string& name);
+  void poll();
   void finish(const spare::StickStatus& status);
   std::string stick_request_file() const { return adit_spare_.requests() + '/' + spare::kForStickFile; }
 
@@ -49,15 +49,15 @@ class SpareStick {
   host::RootProgram<spare::StickStatus> adit_spare_;
   Taken taken_;
   loop::Source timer_;
-  std::optional<What> asked_;  // until it is finished
-  std::string refusal_;        // why the last request failed
+  std::optional<Command> asked_;  // until it is finished
+  std::string refusal_;           // why the last request failed
 };
 
 /// The box's standby and its export, and the import of another box's (firmware/rules/spare/README.md).
 class Spare final : public api::Spare {
  public:
   /// Functions of the gateway, called on the loop.
-  struct Asked {
+  struct Callbacks {
     /// The export's content, without the data about this box and its standby.
     std::function<std::expected<spare::Content, std::string>()> content;
     /// Whether the time of day is reliable.
@@ -70,7 +70,7 @@ class Spare final : public api::Spare {
   /// takeover, unreadable settings), or "". `workers`: for jobs of 0.1 s. `loop`, `workers` and `takeover`
   /// must outlive this object.
   Spare(loop::Loop& loop, loop::Workers& workers, Takeover& takeover, std::string state_folder,
-        const std::string& status_folder, const std::string& stuck, Asked asked);
+        const std::string& status_folder, const std::string& stuck, Callbacks asked);
 
   /// Why the box is a standby, or "".
   const std::string& standby() const { return standby_; }
@@ -81,11 +81,11 @@ class Spare final : public api::Spare {
   void on_end(const std::optional<icd::RunStatus>& expected);
 
   api::SpareView state() const override;
-  icd::Checked<void> stand_by() override;
+  icd::Checked<void> enter_standby() override;
   icd::Checked<void> resume() override;
   void export_to(Sealed done) override;
   void export_to_stick(Done done) override;
-  icd::Checked<void> take_from_stick(const std::string& name) override;
+  icd::Checked<void> import_from_stick(const std::string& name) override;
   icd::Checked<void> import_file(std::string file) override;
   void open(const std::string& code, Done done) override;
   icd::Checked<void> forget() override;
@@ -93,18 +93,18 @@ class Spare final : public api::Spare {
 
  private:
   /// An imported export that was opened.
-  struct Opened {
+  struct OpenedExport {
     spare::Content content;
-    settings::Saved settings;
+    settings::SavedSettings settings;
   };
 
   icd::Checked<void> keep(const SpareFile& next);
   bool is_current_export(const std::string& file) const;
   /// `file`: the export. `name`: the box's address for the team.
-  using Named = std::function<void(icd::Checked<std::string> file, const std::string& name)>;
-  void seal(const Named& done);
-  void taken_from_stick(std::string file);
-  icd::Checked<Opened> check(const std::expected<std::string, std::string>& text) const;
+  using SealCallback = std::function<void(icd::Checked<std::string> file, const std::string& name)>;
+  void seal(const SealCallback& done);
+  void on_stick_export(std::string file);
+  icd::Checked<OpenedExport> check(const std::expected<std::string, std::string>& text) const;
 
   loop::Loop& loop_;
   loop::Workers& workers_;
@@ -112,14 +112,14 @@ class Spare final : public api::Spare {
   std::string state_;
   SpareStick stick_;
   std::string stuck_, unread_;
-  Asked asked_;
+  Callbacks asked_;
   loop::Source restart_;  // fires after the client has its answer
   SpareFile file_;
   std::string standby_;
   bool goes_on_standby_ = false;  // when this gateway ends
   bool takes_over_ = false;
   std::shared_ptr<const std::string> sealed_;  // imported and not opened yet, or null
-  std::optional<Opened> opened_;
+  std::optional<OpenedExport> opened_;
 };
 
 }  // namespace adit::admin

@@ -34,7 +34,7 @@ bool is_there(const std::string& file) {
 void mark_saved(const std::string& file, const std::string& mark) {
   if (!is_there(file)) return;
   host::keep_copy(file);
-  if (host::may_exist(mark)) return;
+  if (host::can_exist(mark)) return;
   host::log_failure(host::Level::Warning, "the loss of a saved file may not be noticed",
                     host::write_file(mark, "", host::kOursAlone));
 }
@@ -57,7 +57,7 @@ icd::Redaction Store::redaction() const {
   return secrets ? secrets->redaction() : icd::Redaction();
 }
 
-std::expected<Store::Loaded, std::string> Store::load() {
+std::expected<Store::LoadedSettings, std::string> Store::load() {
   unread_.clear();
   auto loaded = read(unread_);
   if (!loaded) return loaded;
@@ -79,9 +79,9 @@ bool Store::can_be_read() const {
 
 /// Leaves out settings of a later Adit that this one does not know, so that a reverted update preserves the
 /// others.
-std::expected<Store::Loaded, std::string> Store::read(std::string& unread) const {
-  Loaded loaded;
-  loaded.saved = host::may_exist(file());
+std::expected<Store::LoadedSettings, std::string> Store::read(std::string& unread) const {
+  LoadedSettings loaded;
+  loaded.saved = host::can_exist(file());
   if (loaded.saved) {
     auto saved = read_settings(file(), settings::parse_saved, unread);
     loaded.saved = saved.has_value();
@@ -94,7 +94,7 @@ std::expected<Store::Loaded, std::string> Store::read(std::string& unread) const
     }
     if (saved) loaded.settings = std::move(saved->settings);
   }
-  if (!host::may_exist(file()) && is_there(mark()))
+  if (!host::can_exist(file()) && is_there(mark()))
     loaded.trouble = "the saved settings are lost; the initial settings are in use: " + file() + " is gone";
   if (!loaded.saved) {
     const auto parse = [](std::string_view json) {
@@ -115,9 +115,9 @@ std::expected<Store::Loaded, std::string> Store::read(std::string& unread) const
 
 std::expected<void, std::string> Store::save(const settings::Settings& settings) {
   if (!unread_.empty()) return std::unexpected(unread_);
-  if (!host::may_exist(file_before())) {
+  if (!host::can_exist(file_before())) {
     std::expected<std::string, std::string> before = settings::kNoneBefore;
-    if (host::may_exist(file())) before = host::read_file(file());
+    if (host::can_exist(file())) before = host::read_file(file());
     if (!before) return std::unexpected(before.error());
     if (const auto kept = host::write_kept(file_before(), *before); !kept) return kept;
   }
@@ -184,7 +184,7 @@ std::expected<void, std::string> Store::put_back() {
 }
 
 bool Store::revert() {
-  if (!unread_.empty() || !host::may_exist(file_before())) return false;
+  if (!unread_.empty() || !host::can_exist(file_before())) return false;
   return host::log_failure(host::Level::Error, "cannot restore the previous settings", put_back()) &&
          host::remove_file(file_before());
 }

@@ -22,7 +22,7 @@ class Store {
  public:
   Store(std::string given_settings, std::string given_secrets, std::string state_folder);
 
-  struct Loaded {
+  struct LoadedSettings {
     settings::Settings settings;
     bool saved = false;
     bool is_damaged = false;  // the saved settings could be read, but not parsed
@@ -32,7 +32,7 @@ class Store {
   /// Redacts all stored secrets, because an error about them quotes them.
   icd::Redaction redaction() const;
   /// Loads the configuration that applies. Error: neither can be used. Damaged saved settings are set aside.
-  std::expected<Loaded, std::string> load();
+  std::expected<LoadedSettings, std::string> load();
   /// Why load() could not read a file, or "". The box must not use that result. Until load() succeeds,
   /// save(), settle() and revert() change nothing.
   const std::string& unread() const { return unread_; }
@@ -65,7 +65,7 @@ class Store {
                                                  const std::optional<icd::BearerToken>& next);
   std::expected<void, std::string> put_back();
   /// As load(), without changes on disk.
-  std::expected<Loaded, std::string> read(std::string& unread) const;
+  std::expected<LoadedSettings, std::string> read(std::string& unread) const;
 
   const std::string given_settings_, given_secrets_, state_;
   std::string unread_;

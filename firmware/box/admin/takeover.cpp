@@ -20,14 +20,14 @@ namespace adit::admin {
 namespace {
 
 constexpr codec::Member kRestMembers[] = {
-    codec::member<&Rest::code>("code"),         codec::member<&Rest::since>("since"),
-    codec::member<&Rest::stamp>("stamp"),       codec::member<&Rest::told>("told"),
-    codec::member<&Rest::expected>("expected"),
+    codec::member<&Standby::code>("code"),         codec::member<&Standby::since>("since"),
+    codec::member<&Standby::stamp>("stamp"),       codec::member<&Standby::told>("told"),
+    codec::member<&Standby::expected>("expected"),
 };
 constexpr codec::Member kTakenMembers[] = {
-    codec::member<&TakenFrom::box>("box"),
-    codec::member<&TakenFrom::at>("at"),
-    codec::member<&TakenFrom::rest_count>("rest_count"),
+    codec::member<&TakeoverRecord::box>("box"),
+    codec::member<&TakeoverRecord::at>("at"),
+    codec::member<&TakeoverRecord::rest_count>("rest_count"),
 };
 constexpr codec::Member kFileMembers[] = {
     codec::member<&SpareFile::box>("box"),
@@ -38,8 +38,8 @@ constexpr codec::Member kFileMembers[] = {
 
 }  // namespace
 
-constexpr codec::Row Rest::kRow = codec::complete<Rest>({"", kRestMembers});
-constexpr codec::Row TakenFrom::kRow = codec::complete<TakenFrom>({"", kTakenMembers});
+constexpr codec::Row Standby::kRow = codec::complete<Standby>({"", kRestMembers});
+constexpr codec::Row TakeoverRecord::kRow = codec::complete<TakeoverRecord>({"", kTakenMembers});
 constexpr codec::Row SpareFile::kRow = codec::complete<SpareFile>({"", kFileMembers});
 
 std::expected<SpareFile, std::string> SpareFile::read(const std::string& state_folder) {
@@ -55,9 +55,9 @@ std::expected<void, std::string> SpareFile::write(const std::string& state_folde
   return host::write_kept(state_folder + '/' + kName, codec::write_file(*this));
 }
 
-std::string SpareFile::hindrance(const spare::About& about) const {
+std::string SpareFile::refusal_reason(const spare::ExportInfo& about) const {
   if (about.box == box) return "this box made the export itself: end the standby if no spare took over";
-  const auto before = std::ranges::find(taken, about.box, &TakenFrom::box);
+  const auto before = std::ranges::find(taken, about.box, &TakeoverRecord::box);
   if (before == taken.end()) return "";
   // Prefers the counts, because that box's clock may have been set back in between.
   const bool are_counted = about.rest_count && before->rest_count;
@@ -72,7 +72,7 @@ namespace {
 /// Seconds by which this box's stamps (`stamp` now) are ahead of the first box's. `wall`: this box's time of
 /// day. The time since the first box's standby comes from both times of day. If they cannot be compared, it
 /// counts as 0, because a long silence would look like a new run.
-double stamp_offset(const spare::About& about, double stamp, double wall) {
+double stamp_offset(const spare::ExportInfo& about, double stamp, double wall) {
   const double since = std::max(0.0, wall - about.told_at.value_or(wall));
   return stamp - since - about.stamp;
 }
@@ -109,7 +109,7 @@ std::expected<void, std::string> Takeover::begin(const std::string& content) {
 std::expected<bool, std::string> Takeover::finish(const loop::Loop& loop) {
   const auto file = host::slurp(marker_path(), spare::kLargestExport);
   if (!file && file.error() == ENOENT) return false;
-  if (!file) return std::unexpected(unread_ = host::trouble(marker_path(), file.error()));
+  if (!file) return std::unexpected(unread_ = host::path_error(marker_path(), file.error()));
   const auto content = spare::read(file->text);
   if (!content) return std::unexpected(marker_path() + ": " + content.error());
   ADIT_TRY(apply(*content, loop));
@@ -129,7 +129,7 @@ std::expected<void, std::string> Takeover::apply(const spare::Content& content, 
       .stamp = std::max(loop.stamp_now(), least),
       .ahead = stamp_offset(content.about, std::max(loop.stamp_now(), least), loop.wall_now())};
   if (auto taken = apply_ledger(content, handover, kept.ledger); !taken) return taken;
-  forward::StampFloor::Kept next = kept;
+  forward::StampFloor::StoredFloor next = kept;
   next.floor = std::max(kept.floor, least);
   next.least = least;
   stamps.write(next);
@@ -139,7 +139,7 @@ std::expected<void, std::string> Takeover::apply(const spare::Content& content, 
   return note(content.about);
 }
 
-std::expected<settings::Saved, std::string> Takeover::check(const spare::Content& content) const {
+std::expected<settings::SavedSettings, std::string> Takeover::check(const spare::Content& content) const {
   auto saved = settings::parse_saved(content.settings);
   if (!saved)
     return std::unexpected("this box cannot use the export's settings: " +
@@ -185,10 +185,10 @@ std::expected<void, std::string> Takeover::apply_settings(const spare::Content& 
   return store_.save(saved->settings);
 }
 
-std::expected<void, std::string> Takeover::note(const spare::About& about) {
+std::expected<void, std::string> Takeover::note(const spare::ExportInfo& about) {
   auto file = ADIT_TRY(SpareFile::read(state_));
   file.rest.reset();
-  std::erase_if(file.taken, [&about](const TakenFrom& each) { return each.box == about.box; });
+  std::erase_if(file.taken, [&about](const TakeoverRecord& each) { return each.box == about.box; });
   file.taken.push_back({.box = about.box, .at = about.at, .rest_count = about.rest_count});
   return file.write(state_);
 }

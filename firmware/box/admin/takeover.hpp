@@ -18,30 +18,30 @@
 namespace adit::admin {
 
 /// A standby of the box.
-struct Rest {
+struct Standby {
   std::string code = "";                       // of the export
   double since = 0;                            // seconds since 1970
   std::optional<double> stamp = std::nullopt;  // at `since`; nullopt: from an earlier Adit
-  std::optional<double> told = std::nullopt;   // spare::About::told_at
+  std::optional<double> told = std::nullopt;   // spare::ExportInfo::told_at
   /// The answer of /api/status after the last request in flight. std::nullopt: not known for certain.
   std::optional<icd::RunStatus> expected = std::nullopt;
   static const codec::Row kRow;
 };
 
 /// An export that was taken over from.
-struct TakenFrom {
+struct TakeoverRecord {
   std::string box = "";
   double at = 0;                                          // start of that box's standby
-  std::optional<std::int64_t> rest_count = std::nullopt;  // spare::About
+  std::optional<std::int64_t> rest_count = std::nullopt;  // spare::ExportInfo
   static const codec::Row kRow;
 };
 
 /// The box's permanent record of itself and its spare, in the state directory.
 struct SpareFile {
   std::string box = "";  // the box's own number; "": not drawn yet
-  std::optional<Rest> rest = std::nullopt;
-  std::optional<std::int64_t> rest_count = std::nullopt;  // spare::About
-  std::vector<TakenFrom> taken = {};
+  std::optional<Standby> rest = std::nullopt;
+  std::optional<std::int64_t> rest_count = std::nullopt;  // spare::ExportInfo
+  std::vector<TakeoverRecord> taken = {};
 
   static const codec::Row kRow;
   static constexpr const char* kName = "spare.json";
@@ -52,7 +52,7 @@ struct SpareFile {
   std::expected<void, std::string> write(const std::string& state_folder) const;
 
   /// Why this export must not be taken over from, or "".
-  std::string hindrance(const spare::About& about) const;
+  std::string refusal_reason(const spare::ExportInfo& about) const;
 };
 
 /// Takeover from another box's export, safe against a power cut. begin() stores the export; the next finish()
@@ -67,7 +67,7 @@ class Takeover {
       : store_(store), state_(std::move(state_folder)), memory_(std::move(memory)) {}
 
   /// The export's settings. Error: the takeover is impossible. Does not change the box.
-  std::expected<settings::Saved, std::string> check(const spare::Content& content) const;
+  std::expected<settings::SavedSettings, std::string> check(const spare::Content& content) const;
   /// `content`: from spare::write(). Error: the takeover has not begun.
   std::expected<void, std::string> begin(const std::string& content);
   /// If begun, takes over reports and runs into the ledger, settings, tokens, certificate and the stamp
@@ -86,7 +86,7 @@ class Takeover {
                                                 const dispatch::Handover& handover,
                                                 const ledger::LedgerFacts& known);
   std::expected<void, std::string> apply_settings(const spare::Content& content);
-  std::expected<void, std::string> note(const spare::About& about);
+  std::expected<void, std::string> note(const spare::ExportInfo& about);
 
   Store& store_;
   std::string state_, memory_, unread_;

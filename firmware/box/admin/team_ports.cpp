@@ -24,12 +24,12 @@ void TeamPorts::every_second(const network::TeamPorts& ports) {
     return;
   }
   if (asked_at_ && asked_ == ports &&
-      (loop_.now() < *asked_at_ + kAskAgain || host::may_exist(state_ + '/' + network::kPortsFile)))
+      (loop_.now() < *asked_at_ + kAskAgain || host::can_exist(state_ + '/' + network::kPortsFile)))
     return;
   asked_ = ports;
   asked_at_ = loop_.now();
   host::log_failure(host::Level::Error, "cannot request ports",
-                    host::leave_request(state_, network::kPortsFile, ports));
+                    host::write_request(state_, network::kPortsFile, ports));
 }
 
 }  // namespace adit::admin

@@ -20,16 +20,16 @@
 namespace adit::admin {
 namespace {
 
-icd::Refusal cannot(const std::string& why) {
+icd::Refusal write_refusal(const std::string& why) {
   return {icd::Status::ServiceUnavailable, "cannot write the bundle: " + why};
 }
 
 }  // namespace
 
 /// Runs on the loop, except write_now(), which runs once at a time in the writer thread.
-class UpdateUpload::Writing : public std::enable_shared_from_this<Writing> {
+class UpdateUpload::WriteJob : public std::enable_shared_from_this<WriteJob> {
  public:
-  Writing(loop::Writer& writer, Ends ends, loop::FileDescriptor file)
+  WriteJob(loop::Writer& writer, Callbacks ends, loop::FileDescriptor file)
       : writer_(writer), ends_(std::move(ends)), file_(std::move(file)) {}
 
   bool consume(std::span<const std::uint8_t> piece) {
@@ -43,7 +43,7 @@ class UpdateUpload::Writing : public std::enable_shared_from_this<Writing> {
 
   void finish(std::function<void(icd::Checked<void>)> done) {
     done_ = std::move(done);
-    if (!busy_) go_on();
+    if (!busy_) resume();
   }
 
   void drop() {
@@ -64,12 +64,12 @@ class UpdateUpload::Writing : public std::enable_shared_from_this<Writing> {
         [self = shared_from_this(), bytes = std::exchange(waiting_, {})] { self->write_now(bytes); },
         [self = shared_from_this()] {
           self->busy_ = false;
-          self->go_on();
+          self->resume();
         },
         [self = shared_from_this()] {
           self->busy_ = false;
           self->error_ = ENOMEM;
-          self->go_on();
+          self->resume();
         });
   }
 
@@ -84,7 +84,7 @@ class UpdateUpload::Writing : public std::enable_shared_from_this<Writing> {
     if (error_ != 0 && ftruncate(file_.get(), 0) != 0) file_ = {};
   }
 
-  void go_on() {
+  void resume() {
     if (dropped_) return;
     if (done_) {
       if (!waiting_.empty() && error_ == 0) return write_waiting();
@@ -105,17 +105,17 @@ class UpdateUpload::Writing : public std::enable_shared_from_this<Writing> {
   }
 
   icd::Checked<void> check_complete() {
-    if (error_ != 0) return std::unexpected(cannot(std::strerror(error_)));
+    if (error_ != 0) return std::unexpected(write_refusal(std::strerror(error_)));
     if (received_ != ends_.size)
-      return std::unexpected(cannot(icd::sentence("got ", received_, " of ", ends_.size, " bytes")));
+      return std::unexpected(write_refusal(icd::sentence("got ", received_, " of ", ends_.size, " bytes")));
     file_ = loop::FileDescriptor();  // adit-update rejects a file that is open for writing
     if (std::rename(ends_.part.c_str(), ends_.whole.c_str()) != 0)
-      return std::unexpected(cannot(std::strerror(errno)));
+      return std::unexpected(write_refusal(std::strerror(errno)));
     return ends_.request_install();
   }
 
   loop::Writer& writer_;
-  Ends ends_;
+  Callbacks ends_;
   loop::FileDescriptor file_;
   std::vector<std::uint8_t> waiting_;
   std::uint64_t received_ = 0;
@@ -127,13 +127,13 @@ class UpdateUpload::Writing : public std::enable_shared_from_this<Writing> {
   std::function<void(icd::Checked<void>)> done_;
 };
 
-icd::Checked<std::unique_ptr<UpdateUpload>> UpdateUpload::begin(loop::Writer& writer, Ends ends) {
+icd::Checked<std::unique_ptr<UpdateUpload>> UpdateUpload::begin(loop::Writer& writer, Callbacks ends) {
   unlink(ends.part.c_str());
   loop::FileDescriptor file(
       ::open(ends.part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600));
-  if (!file) return std::unexpected(cannot(std::strerror(errno)));
+  if (!file) return std::unexpected(write_refusal(std::strerror(errno)));
   return std::unique_ptr<UpdateUpload>(
-      new UpdateUpload(std::make_shared<Writing>(writer, std::move(ends), std::move(file))));
+      new UpdateUpload(std::make_shared<WriteJob>(writer, std::move(ends), std::move(file))));
 }
 
 UpdateUpload::~UpdateUpload() {
@@ -160,9 +160,9 @@ constexpr std::string_view kOfVersions =
 constexpr std::size_t kLongestLine = 200;
 
 /// The action to show until adit-update reports its own.
-const char* pending_action(update::Request::What what) {
-  using What = update::Request::What;
-  return what == What::Restart || what == What::Back ? "restarting" : "checking";
+const char* pending_action(update::Request::Command what) {
+  using Command = update::Request::Command;
+  return what == Command::Restart || what == Command::Back ? "restarting" : "checking";
 }
 
 /// Refuses a bundle of that size if it does not fit into the directory.
@@ -219,7 +219,7 @@ api::UpdateView Updates::state() const {
     view.status.doing = "receiving";
     view.status.progress = static_cast<int>(100 * receiving_->received_bytes() / expected_);
     view.status.refusal.clear();
-  } else if (adit_update_.waits()) {
+  } else if (adit_update_.is_pending()) {
     view.status.doing = pending_action(asked_);
     view.status.refusal.clear();
   }
@@ -256,7 +256,7 @@ icd::Checked<std::unique_ptr<api::Upload>> Updates::receive(std::uint64_t size, 
                 .whole = bundle_file(),
                 .size = size,
                 .resume = std::move(resume),
-                .request_install = [this, again] { return ask(update::Request::What::Install, again); },
+                .request_install = [this, again] { return ask(update::Request::Command::Install, again); },
                 .on_over = [this] { receiving_ = nullptr; }}));
   host::log(host::Level::Notice, "receiving an update", {{"bytes", std::to_string(size)}});
   receiving_ = upload.get();
@@ -266,28 +266,28 @@ icd::Checked<std::unique_ptr<api::Upload>> Updates::receive(std::uint64_t size, 
 
 icd::Checked<void> Updates::install_from_stick(bool again) {
   ADIT_TRY(check_installable());
-  return ask(update::Request::What::Stick, again);
+  return ask(update::Request::Command::Stick, again);
 }
 
-icd::Checked<void> Updates::go_back(bool anyway) {
+icd::Checked<void> Updates::restart_proven_slot(bool anyway) {
   ADIT_TRY(check_stray());
-  return ask_for_restart(update::Request::What::Back, anyway);
+  return ask_for_restart(update::Request::Command::Back, anyway);
 }
 
-icd::Checked<void> Updates::stay() {
+icd::Checked<void> Updates::keep_running_slot() {
   ADIT_TRY(check_stray());
   ADIT_TRY(check_free());
-  return ask(update::Request::What::Stay, false);
+  return ask(update::Request::Command::Stay, false);
 }
 
-icd::Checked<void> Updates::ask_for_restart(update::Request::What what, bool anyway) {
+icd::Checked<void> Updates::ask_for_restart(update::Request::Command what, bool anyway) {
   ADIT_TRY(check_free());
   const std::string report = anyway ? "" : under_way_();
   if (!report.empty()) return icd::conflict(report);
   return ask(what, false);
 }
 
-icd::Checked<void> Updates::ask(update::Request::What what, bool again) {
+icd::Checked<void> Updates::ask(update::Request::Command what, bool again) {
   const update::Request request{.nonce = host::draw_nonce(), .what = what, .again = again};
   asked_ = what;
   if (const auto asked = adit_update_.ask(update::kRequestFile, request); !asked)

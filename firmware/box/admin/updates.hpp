@@ -21,7 +21,7 @@ class UpdateUpload final : public api::Upload {
   static constexpr std::size_t kTogether = 256 << 10;
 
   /// Data and callbacks of the caller. All but `part` and `whole` are used on the loop.
-  struct Ends {
+  struct Callbacks {
     std::string part, whole;                              // path during the upload, and afterwards
     std::uint64_t size = 0;                               // announced size
     std::function<void()> resume;                         // accept more data
@@ -29,7 +29,7 @@ class UpdateUpload final : public api::Upload {
     std::function<void()> on_over;                        // the upload is finished or abandoned
   };
   /// Error: the file cannot be created. `writer` must outlive this object.
-  static icd::Checked<std::unique_ptr<UpdateUpload>> begin(loop::Writer& writer, Ends ends);
+  static icd::Checked<std::unique_ptr<UpdateUpload>> begin(loop::Writer& writer, Callbacks ends);
   ~UpdateUpload() override;
   UpdateUpload(const UpdateUpload&) = delete;
   UpdateUpload& operator=(const UpdateUpload&) = delete;
@@ -39,9 +39,9 @@ class UpdateUpload final : public api::Upload {
   std::uint64_t received_bytes() const;
 
  private:
-  class Writing;
-  explicit UpdateUpload(std::shared_ptr<Writing> writing) : writing_(std::move(writing)) {}
-  std::shared_ptr<Writing> writing_;  // shared with the writer's jobs
+  class WriteJob;
+  explicit UpdateUpload(std::shared_ptr<WriteJob> writing) : writing_(std::move(writing)) {}
+  std::shared_ptr<WriteJob> writing_;  // shared with the writer's jobs
 };
 
 /// The operator's updates of the box, executed by adit-update.
@@ -62,10 +62,10 @@ class Updates final : public api::Updates {
                                                      std::function<void()> resume) override;
   icd::Checked<void> install_from_stick(bool again) override;
   icd::Checked<void> restart(bool anyway) override {
-    return ask_for_restart(update::Request::What::Restart, anyway);
+    return ask_for_restart(update::Request::Command::Restart, anyway);
   }
-  icd::Checked<void> go_back(bool anyway) override;
-  icd::Checked<void> stay() override;
+  icd::Checked<void> restart_proven_slot(bool anyway) override;
+  icd::Checked<void> keep_running_slot() override;
 
   /// Call each second: reads the result of the last request.
   void every_second();
@@ -84,15 +84,15 @@ class Updates final : public api::Updates {
   /// Refuses if no unexpected slot runs.
   icd::Checked<void> check_stray() const;
   /// Requests a restart. Rejected while a report is in flight, unless `anyway`.
-  icd::Checked<void> ask_for_restart(update::Request::What what, bool anyway);
-  icd::Checked<void> ask(update::Request::What what, bool again);
+  icd::Checked<void> ask_for_restart(update::Request::Command what, bool anyway);
+  icd::Checked<void> ask(update::Request::Command what, bool again);
 
   loop::Writer& writer_;
   host::RootProgram<update::Status> adit_update_;
   std::function<std::string()> under_way_;
   std::uint64_t expected_ = 0;               // bytes of the present upload, or 0
   const UpdateUpload* receiving_ = nullptr;  // the present upload, or null
-  update::Request::What asked_{};            // last request
+  update::Request::Command asked_{};         // last request
 };
 
 }  // namespace adit::admin

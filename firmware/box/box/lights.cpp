@@ -11,8 +11,8 @@
 
 namespace adit::box {
 
-panel::Held open_panel(const settings::Panel& settings, const PanelPlace& place,
-                       loop::FileDescriptor announced) {
+panel::PanelDevices open_panel(const settings::Panel& settings, const PanelPlace& place,
+                               loop::FileDescriptor announced) {
   if (!place.socket.empty()) {
     auto held = panel::remote(place.socket, settings, std::move(announced));
     if (held) return std::move(*held);
@@ -27,7 +27,7 @@ Lights::Lights(loop::Loop& loop, std::unique_ptr<panel::Lines> lines)
   painter_.set_lines(std::move(lines));
 }
 
-void Lights::beat() {
+void Lights::send_heartbeat() {
   if (painter_.lines() == nullptr || !painter_.lines()->is_watched()) return;
   painter_.set(frame().lit, loop_.now());
   paint();
@@ -130,7 +130,7 @@ ButtonWatch::ButtonWatch(loop::Loop& loop, std::unique_ptr<panel::ButtonLine> li
   set_line(std::move(line));
 }
 
-void ButtonWatch::let_go() {
+void ButtonWatch::release_line() {
   edges_ = {};
   due_ = {};
   line_.reset();
@@ -141,15 +141,15 @@ void ButtonWatch::let_go() {
 void ButtonWatch::set_line(std::unique_ptr<panel::ButtonLine> line) {
   line_ = std::move(line);
   if (!line_) return;
-  edges_ = loop_.watch(line_->descriptor(), EPOLLIN, [this](std::uint32_t) { look(); });
-  due_ = loop_.timer([this] { look(); });
-  look();
+  edges_ = loop_.watch(line_->descriptor(), EPOLLIN, [this](std::uint32_t) { poll(); });
+  due_ = loop_.timer([this] { poll(); });
+  poll();
 }
 
 /// Reads the line at each timer event, because its last change may not have been reported yet.
-void ButtonWatch::look() {
+void ButtonWatch::poll() {
   const auto level = line_->is_pressed();
-  if (!level) return lose(level.error());
+  if (!level) return on_lost(level.error());
   if (!button_) return begin(*level);
   const loop::Instant now = loop_.now();
   const auto before = button_->level(*level, now);
@@ -168,7 +168,7 @@ void ButtonWatch::begin(bool pressed) {
 }
 
 /// The page can replace the button, except for a forgotten password.
-void ButtonWatch::lose(const std::string& why) {
+void ButtonWatch::on_lost(const std::string& why) {
   due_.call_at(loop_.now() + kAgain);
   if (std::exchange(button_, std::nullopt)) show();
   if (!std::exchange(is_lost_, true)) {

@@ -25,8 +25,8 @@ struct PanelPlace {
 };
 /// adit-panel's panel, or one that this process holds. The simulated panel is the file `panel` in the folder.
 /// `announced`: panel::announce(), or empty.
-panel::Held open_panel(const settings::Panel& settings, const PanelPlace& place,
-                       loop::FileDescriptor announced = {});
+panel::PanelDevices open_panel(const settings::Panel& settings, const PanelPlace& place,
+                               loop::FileDescriptor announced = {});
 
 /// Shows states on the panel. The loop times patterns and repetitions (panel::Painter).
 class Lights {
@@ -34,11 +34,11 @@ class Lights {
   Lights(loop::Loop& loop, std::unique_ptr<panel::Lines> lines);
 
   /// Releases the lines, before set_lines() with others or the same.
-  void let_go() { painter_.set_lines(nullptr); }
+  void release_lines() { painter_.set_lines(nullptr); }
   void set_lines(std::unique_ptr<panel::Lines> lines);
 
   /// Call once a second: sets watched lines again, which shows their holder that the loop turns.
-  void beat();
+  void send_heartbeat();
 
   void set(panel::LightState state, bool asserted);
   /// For `length` from now on.
@@ -85,13 +85,13 @@ class ButtonWatch {
               std::function<void(panel::Press)> pressed);
 
   /// Releases the line, before set_line() with another or the same.
-  void let_go();
+  void release_line();
   void set_line(std::unique_ptr<panel::ButtonLine> line);
 
  private:
-  void look();
+  void poll();
   void begin(bool pressed);
-  void lose(const std::string& why);
+  void on_lost(const std::string& why);
   void show();
 
   loop::Loop& loop_;

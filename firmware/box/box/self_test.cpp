@@ -31,7 +31,7 @@ void put(const Endpoint& typed, settings::Address& address) {
 }
 
 /// Names errors by the candidate's members.
-icd::Refusal unfit(std::vector<settings::Error> errors) {
+icd::Refusal settings_refusal(std::vector<settings::Error> errors) {
   constexpr std::string_view kOwn = "command_post.";
   for (settings::Error& error : errors) {
     if (error.path.starts_with(kOwn)) error.path.erase(0, kOwn.size());
@@ -54,14 +54,14 @@ icd::Checked<TestTarget> tried_of(const api::Candidate& candidate, const setting
   settings::Settings next = written;
   if (candidate.course) next.command_post.course = *candidate.course;
   const auto known = settings::parse(settings::value_of(next));  // checks the course
-  if (!known) return std::unexpected(unfit(known.error()));
+  if (!known) return std::unexpected(settings_refusal(known.error()));
   const settings::Settings in_use = settings::effective_settings(*known);
   // Clears the course, which would replace these addresses.
   next.command_post = in_use.command_post;
   put(candidate.scoring, next.command_post.scoring);
   put(candidate.mapping, next.command_post.mapping);
   const auto checked = settings::parse(settings::value_of(next));
-  if (!checked) return std::unexpected(unfit(checked.error()));
+  if (!checked) return std::unexpected(settings_refusal(checked.error()));
   TestTarget tried{.post = checked->command_post, .scoring = {}, .mapping = {}};
   tried.scoring = token_of("scoring", candidate.scoring, in_use, secrets, tried.typed);
   tried.mapping = token_of("mapping", candidate.mapping, in_use, secrets, tried.typed);
@@ -92,13 +92,13 @@ std::string check_answer(int status, const std::string& body) {
 }
 
 /// An error about the empty request shows that the token passed.
-bool took_the_token(Asked asked, int status, dispatch::Body body) {
+bool is_token_accepted(EndpointKind asked, int status, dispatch::Body body) {
   if (body == dispatch::Body::Other) return false;  // not a Command Post's answer
   if (status >= 200 && status < 300) return true;
-  return asked == Asked::Mapping && (status == 400 || status == 415 || status == 422);
+  return asked == EndpointKind::Mapping && (status == 400 || status == 415 || status == 422);
 }
 
-std::string no_endpoint(Asked asked) {
+std::string no_endpoint(EndpointKind asked) {
   return icd::sentence("This is no ", name_of(asked), " endpoint: compare the ", name_of(asked),
                        " address and port with those posted in the Base Station area; scoring and mapping "
                        "may be exchanged.");
@@ -106,12 +106,12 @@ std::string no_endpoint(Asked asked) {
 
 }  // namespace
 
-const char* name_of(Asked asked) {
-  return asked == Asked::Scoring ? "scoring" : "mapping";
+const char* name_of(EndpointKind asked) {
+  return asked == EndpointKind::Scoring ? "scoring" : "mapping";
 }
 
-const settings::Address& address_in(const settings::CommandPost& post, Asked asked) {
-  return asked == Asked::Scoring ? post.scoring : post.mapping;
+const settings::Address& address_in(const settings::CommandPost& post, EndpointKind asked) {
+  return asked == EndpointKind::Scoring ? post.scoring : post.mapping;
 }
 
 TestStep skipped_step(const std::string& name, const std::string& why) {
@@ -134,7 +134,7 @@ TestStep link(const std::string& interface, std::optional<bool> carrier) {
 
 TestStep address(const std::string& interface,
                  const std::expected<std::optional<settings::Subnet>, std::string>& own,
-                 const std::optional<network::Probed>& probed, const std::string& not_asked) {
+                 const std::optional<network::ProbeResult>& probed, const std::string& not_asked) {
   if (interface.empty()) return skipped_step("address", "the settings name no command_post.interface");
   if (!own) return skipped_step("address", own.error());
   if (!*own) {
@@ -166,7 +166,7 @@ TestStep address(const std::string& interface,
 }
 
 TestStep cables(const std::string& interface, const std::string& team, const std::string& sought,
-                const std::optional<network::Probed>& probed) {
+                const std::optional<network::ProbeResult>& probed) {
   if (!probed || sought.empty())
     return skipped_step("cables", "could not check which network is at which port");
   if (probed->found_on == interface) return good("cables", icd::sentence(sought, " is at ", interface));
@@ -210,7 +210,7 @@ TestStep reach(const std::string& at, int error, const std::string& why) {
   }
 }
 
-TestStep no_token(Asked asked) {
+TestStep no_token(EndpointKind asked) {
   return bad("token", icd::sentence("there is no ", name_of(asked), " token"),
              "Enter the token from the organisers.");
 }
@@ -220,7 +220,7 @@ TestStep no_turn(const std::string& name) {
       name, "not checked: the run itself uses all requests that the endpoint allows; try again later");
 }
 
-TestStep token(Asked asked, const uplink::Outcome& outcome, bool slash) {
+TestStep token(EndpointKind asked, const uplink::Outcome& outcome, bool slash) {
   const auto* answer = std::get_if<uplink::Answered>(&outcome);
   if (answer == nullptr) {
     const auto* never = std::get_if<uplink::NeverSent>(&outcome);
@@ -231,8 +231,8 @@ TestStep token(Asked asked, const uplink::Outcome& outcome, bool slash) {
   }
   const int status = answer->status;
   const dispatch::Body body = dispatch::body_of(answer->body);
-  const bool is_taken = took_the_token(asked, status, body);
-  if (is_taken && asked == Asked::Scoring) {
+  const bool is_taken = is_token_accepted(asked, status, body);
+  if (is_taken && asked == EndpointKind::Scoring) {
     if (const auto run = codec::read_run_status(answer->body); !run)
       return bad(
           "token",
@@ -272,7 +272,7 @@ TestStep unknown_path(TestStep accepted, int status, const uplink::Outcome& outc
   return bad("token",
              icd::sentence("the server accepts any path: it answers POST /state/update with ", status,
                            " and POST ", kUnknownPath, ", which no Command Post has, with ", answer->status),
-             no_endpoint(Asked::Mapping));
+             no_endpoint(EndpointKind::Mapping));
 }
 
 TestStep clock(std::optional<std::chrono::sys_seconds> date, double now) {
@@ -320,8 +320,8 @@ icd::ChunkedBytes empty_object() {
 
 }  // namespace
 
-EndpointTest::EndpointTest(loop::Loop& loop, const Turns& turns, const TestTarget& tried, steps::Asked asked,
-                           std::function<void(api::TestStep)> done)
+EndpointTest::EndpointTest(loop::Loop& loop, const Turns& turns, const TestTarget& tried,
+                           steps::EndpointKind asked, std::function<void(api::TestStep)> done)
     : loop_(loop),
       turns_(turns),
       tried_(tried),
@@ -370,7 +370,7 @@ void EndpointTest::ask(const char* step, std::string_view path, std::function<vo
 }
 
 void EndpointTest::send(std::string_view path, std::function<void(uplink::Outcome)> done) {
-  const bool scoring = asked_ == steps::Asked::Scoring;
+  const bool scoring = asked_ == steps::EndpointKind::Scoring;
   connection_ = std::make_unique<uplink::Connection>(loop_, tested_endpoint(), *token());
   connection_->send({.method = std::string(icd::method_of(uri())),
                      .target = std::string(path) + (wants_slash_ ? "/" : ""),
@@ -385,26 +385,26 @@ void EndpointTest::send(std::string_view path, std::function<void(uplink::Outcom
 
 void EndpointTest::check_token() {
   if (!token()) return done_(steps::no_token(asked_));
-  ask("token", icd::path_of(uri()), [this](const uplink::Outcome& outcome) { token_answered(outcome); });
+  ask("token", icd::path_of(uri()), [this](const uplink::Outcome& outcome) { on_token_answer(outcome); });
 }
 
 /// Repeats once after a 429, because Adit requests the status too. Follows a redirect to a slash, and tries a
 /// slash if the status is a web page, as forward::Channel does.
-void EndpointTest::token_answered(const uplink::Outcome& outcome) {
+void EndpointTest::on_token_answer(const uplink::Outcome& outcome) {
   const auto* answer = std::get_if<uplink::Answered>(&outcome);
   if (answer != nullptr) {
     clocks_ = {.date = answer->date, .run_clock = run_clock_in(*answer), .answered_at = loop_.wall_now()};
   }
   const bool is_status = answer != nullptr && codec::read_run_status(answer->body).has_value();
   if (page_ && !is_status) return done_(steps::token(asked_, *page_, false));
-  if (asked_ == steps::Asked::Scoring && answer != nullptr && is_page(*answer) && !wants_slash_)
+  if (asked_ == steps::EndpointKind::Scoring && answer != nullptr && is_page(*answer) && !wants_slash_)
     page_ = *answer;
   const bool is_redirected = answer != nullptr && (answer->wants_slash == true || (page_ && !wants_slash_));
   if (is_redirected) wants_slash_ = true;
   const bool is_throttled = answer != nullptr && answer->status == 429 && !std::exchange(asked_again_, true);
   if (!is_redirected && !is_throttled) {
     api::TestStep step = steps::token(asked_, outcome, wants_slash_);
-    if (step.state == "good" && asked_ == steps::Asked::Mapping)
+    if (step.state == "good" && asked_ == steps::EndpointKind::Mapping)
       return check_unknown_path(std::move(step), answer->status);
     return done_(std::move(step));
   }
@@ -422,7 +422,7 @@ void EndpointTest::check_unknown_path(api::TestStep accepted, int status) {
 }
 
 void EndpointTest::check_clock() {
-  if (clocks_.date || asked_ == steps::Asked::Mapping || !token() || !clocks_.run_clock)
+  if (clocks_.date || asked_ == steps::EndpointKind::Mapping || !token() || !clocks_.run_clock)
     return done_(steps::clock(clocks_.date, clocks_.answered_at));
   when_due_ = [this] {
     ask("clock", icd::path_of(uri()), [this](const uplink::Outcome& outcome) {
@@ -461,16 +461,16 @@ icd::Checked<void> SelfTest::begin_test(const api::Candidate& candidate) {
            .endpoints = {}};
   asked_.clear();
   const bool all = !candidate.scoring && !candidate.mapping;
-  if (all || candidate.scoring) list(steps::Asked::Scoring);
-  if (all || candidate.mapping) list(steps::Asked::Mapping);
+  if (all || candidate.scoring) list(steps::EndpointKind::Scoring);
+  if (all || candidate.mapping) list(steps::EndpointKind::Mapping);
   tested_ = 0;
   probing_ = {};
-  at_ = At::Link;
+  at_ = Phase::Link;
   run_step();
   return {};
 }
 
-void SelfTest::list(steps::Asked asked) {
+void SelfTest::list(steps::EndpointKind asked) {
   asked_.push_back(asked);
   api::TestedEndpoint endpoint{.name = steps::name_of(asked),
                                .address = forward::address_text(steps::address_in(tried_.post, asked)),
@@ -484,19 +484,19 @@ void SelfTest::run_step() {
   changed_();
   const std::string& interface = tried_.post.interface;
   switch (at_) {
-    case At::Link:
+    case Phase::Link:
       return finish(steps::link(interface, host::carrier(interface)));
-    case At::Address:
+    case Phase::Address:
       return ask_address();
-    case At::Cables:
-      return look_at_cables();
-    case At::Reach:
+    case Phase::Cables:
+      return check_cables();
+    case Phase::Reach:
       return reach();
-    case At::Token:
+    case Phase::Token:
       return at_endpoint_->check_token();
-    case At::Clock:
+    case Phase::Clock:
       return at_endpoint_->check_clock();
-    case At::End:
+    case Phase::End:
       return;
   }
 }
@@ -507,9 +507,9 @@ void SelfTest::finish(api::TestStep step) {
   tried_.typed.strike_from(step.said);  // an answer may echo tokens
   const std::string said = step.said;
   endpoint().steps[static_cast<std::size_t>(at_)] = std::move(step);
-  if (is_bad && at_ != At::Address && at_ != At::Cables && at_ != At::Token)
+  if (is_bad && at_ != Phase::Address && at_ != Phase::Cables && at_ != Phase::Token)
     return skip_the_rest("not tried: " + said);
-  at_ = static_cast<At>(static_cast<int>(at_) + 1);
+  at_ = static_cast<Phase>(static_cast<int>(at_) + 1);
   timer_.call_at(loop_.now());
 }
 
@@ -517,19 +517,19 @@ void SelfTest::skip_the_rest(const std::string& why) {
   for (api::TestStep& step : endpoint().steps) {
     if (step.state == "waiting") step = steps::skipped_step(step.name, why);
   }
-  at_ = At::End;
+  at_ = Phase::End;
   timer_.call_at(loop_.now());
 }
 
 void SelfTest::start_next() {
-  if (at_ == At::End) {
+  if (at_ == Phase::End) {
     at_endpoint_.reset();
     if (++tested_ == asked_.size()) {
       tried_ = {};
       view_.running = false;
       return changed_();
     }
-    at_ = At::Link;
+    at_ = Phase::Link;
   }
   run_step();
 }
@@ -562,7 +562,7 @@ void SelfTest::wait_for_probe() {
                         read ? "adit-network did not answer" : read.error()));
 }
 
-void SelfTest::look_at_cables() {
+void SelfTest::check_cables() {
   finish(
       steps::cables(tried_.post.interface, settings_.team.interface, probing_.probe.sought, probing_.found));
 }

@@ -39,9 +39,9 @@ namespace steps {
 
 using api::TestStep;
 
-enum class Asked : std::uint8_t { Scoring, Mapping };
-const char* name_of(Asked asked);
-const settings::Address& address_in(const settings::CommandPost& post, Asked asked);
+enum class EndpointKind : std::uint8_t { Scoring, Mapping };
+const char* name_of(EndpointKind asked);
+const settings::Address& address_in(const settings::CommandPost& post, EndpointKind asked);
 
 /// `carrier`: host::carrier(). `interface` "": not set.
 TestStep link(const std::string& interface, std::optional<bool> carrier);
@@ -49,19 +49,19 @@ TestStep link(const std::string& interface, std::optional<bool> carrier);
 /// `own`: host::own_address(); `probed`: adit-network's finding; `not_asked`: why it has none.
 TestStep address(const std::string& interface,
                  const std::expected<std::optional<settings::Subnet>, std::string>& own,
-                 const std::optional<network::Probed>& probed, const std::string& not_asked);
+                 const std::optional<network::ProbeResult>& probed, const std::string& not_asked);
 
 /// Whether the Command Post is at its own port or at the team's, by the port that finds `sought`, its
 /// endpoint or gateway.
 TestStep cables(const std::string& interface, const std::string& team, const std::string& sought,
-                const std::optional<network::Probed>& probed);
+                const std::optional<network::ProbeResult>& probed);
 
 /// `error`: 0 or an errno; `why`: in words.
 TestStep reach(const std::string& at, int error, const std::string& why);
 
 /// `slash`: the endpoint redirected to a slash at the end of the path.
-TestStep token(Asked asked, const uplink::Outcome& outcome, bool slash = false);
-TestStep no_token(Asked asked);
+TestStep token(EndpointKind asked, const uplink::Outcome& outcome, bool slash = false);
+TestStep no_token(EndpointKind asked);
 
 /// A path that no Command Post has.
 inline constexpr std::string_view kUnknownPath = "/adit-test";
@@ -104,7 +104,7 @@ class EndpointTest {
 
   /// `done` gets the result of each step, within its call or later, and must not destroy this object. The
   /// references must outlive this object.
-  EndpointTest(loop::Loop& loop, const Turns& turns, const TestTarget& tried, steps::Asked asked,
+  EndpointTest(loop::Loop& loop, const Turns& turns, const TestTarget& tried, steps::EndpointKind asked,
                std::function<void(api::TestStep)> done);
 
   // The steps. Each begins after the result of the one before.
@@ -121,14 +121,16 @@ class EndpointTest {
   };
 
   void on_connected(int error, const std::string& why);
-  void token_answered(const uplink::Outcome& outcome);
+  void on_token_answer(const uplink::Outcome& outcome);
   void check_unknown_path(api::TestStep accepted, int status);
   void ask(const char* step, std::string_view path, std::function<void(uplink::Outcome)> done);
   void send(std::string_view path, std::function<void(uplink::Outcome)> done);
 
-  icd::Uri uri() const { return asked_ == steps::Asked::Scoring ? icd::Uri::Status : icd::Uri::StateUpdate; }
+  icd::Uri uri() const {
+    return asked_ == steps::EndpointKind::Scoring ? icd::Uri::Status : icd::Uri::StateUpdate;
+  }
   const std::optional<icd::BearerToken>& token() const {
-    return asked_ == steps::Asked::Scoring ? tried_.scoring : tried_.mapping;
+    return asked_ == steps::EndpointKind::Scoring ? tried_.scoring : tried_.mapping;
   }
   const settings::Address& address() const { return steps::address_in(tried_.post, asked_); }
   uplink::Endpoint tested_endpoint() const;
@@ -136,7 +138,7 @@ class EndpointTest {
   loop::Loop& loop_;
   const Turns& turns_;
   const TestTarget& tried_;
-  const steps::Asked asked_;
+  const steps::EndpointKind asked_;
   const std::function<void(api::TestStep)> done_;
   loop::Source timer_;
   std::function<void()> when_due_;
@@ -168,16 +170,16 @@ class SelfTest final : public api::SelfTest {
   void on_settings_changed() { view_.outdated = view_.number > 0; }
 
  private:
-  enum class At : std::uint8_t { Link, Address, Cables, Reach, Token, Clock, End };
+  enum class Phase : std::uint8_t { Link, Address, Cables, Reach, Token, Clock, End };
 
   /// A request to adit-network, and its answer.
-  struct Probing {
+  struct PendingProbe {
     network::Probe probe;
     std::optional<loop::Instant> until;  // while the answer is awaited
-    std::optional<network::Probed> found;
+    std::optional<network::ProbeResult> found;
   };
 
-  void list(steps::Asked asked);
+  void list(steps::EndpointKind asked);
   void start_next();
   void run_step();
   void finish(api::TestStep step);
@@ -186,23 +188,23 @@ class SelfTest final : public api::SelfTest {
 
   void ask_address();
   void wait_for_probe();
-  void look_at_cables();
+  void check_cables();
   void reach();
-  steps::Asked kind() const { return asked_.at(tested_); }
+  steps::EndpointKind kind() const { return asked_.at(tested_); }
 
   loop::Loop& loop_;
   const settings::Settings& settings_;
   std::function<icd::Checked<TestTarget>(const api::Candidate&)> tried_of_;
   const Turns turns_;
   TestTarget tried_;  // fixed during a test
-  std::vector<steps::Asked> asked_;
+  std::vector<steps::EndpointKind> asked_;
   const admin::NetworkChange& network_;
   std::function<void()> changed_;
   api::TestView view_;
   std::size_t tested_ = 0;  // index of the endpoint
-  At at_ = At::End;
+  Phase at_ = Phase::End;
   loop::Source timer_;
-  Probing probing_;
+  PendingProbe probing_;
   std::optional<EndpointTest> at_endpoint_;  // from Reach to End
 };
 

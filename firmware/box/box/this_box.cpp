@@ -26,8 +26,8 @@
 
 namespace adit::box {
 
-Links::Links(loop::Loop& loop, const settings::Settings& settings, Look look, loop::FileDescriptor kernel,
-             std::function<void()> changed, std::function<void()> back)
+Links::Links(loop::Loop& loop, const settings::Settings& settings, CarrierReader look,
+             loop::FileDescriptor kernel, std::function<void()> changed, std::function<void()> back)
     : look_(std::move(look)),
       changed_(std::move(changed)),
       back_(std::move(back)),
@@ -37,13 +37,13 @@ Links::Links(loop::Loop& loop, const settings::Settings& settings, Look look, lo
   if (kernel_) {
     told_ = loop.watch(kernel_.get(), EPOLLIN, [this](std::uint32_t) {
       if (!host::take_link_changes(kernel_)) told_.wait_for(0);
-      this->look();
+      this->refresh();
     });
   }
   for (Link& link : links_) link.carrier = look_(link.interface);
 }
 
-void Links::look_at(const settings::Settings& settings) {
+void Links::watch_settings(const settings::Settings& settings) {
   const std::string* const interfaces[] = {&settings.team.interface, &settings.command_post.interface};
   for (std::size_t i = 0; i < links_.size(); ++i) {
     if (links_[i].interface == *interfaces[i]) continue;
@@ -52,7 +52,7 @@ void Links::look_at(const settings::Settings& settings) {
   }
 }
 
-void Links::look() {
+void Links::refresh() {
   bool changed = false, back = false;
   for (Link& link : links_) {
     const auto before = std::exchange(link.carrier, look_(link.interface));
@@ -83,7 +83,7 @@ constexpr std::size_t kMostNotices = 8, kLongestNotice = 500;
 }  // namespace
 
 KnownBoard read_board(const std::string& file) {
-  if (file.empty() || !host::may_exist(file)) return {};
+  if (file.empty() || !host::can_exist(file)) return {};
   const auto text = host::read_file(file);
   auto board =
       text ? settings::parse_board(*text) : std::unexpected(std::vector<settings::Error>{{"", text.error()}});

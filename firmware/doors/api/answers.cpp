@@ -37,7 +37,7 @@ bool has_header(const intake::Answer& answer, std::string_view name) {
   return std::ranges::find(answer.headers, name, &intake::Header::name) != answer.headers.end();
 }
 
-bool pays(const intake::Answer& answer) {
+bool is_worth_packing(const intake::Answer& answer) {
   const std::string_view type = answer.content_type;
   const bool is_text = type.starts_with("text/") || type.starts_with("application/json");
   return is_text && answer.body.size() >= kFewestPacked && answer.body.size() <= kMostPacked &&
@@ -46,13 +46,13 @@ bool pays(const intake::Answer& answer) {
 
 }  // namespace
 
-bool takes_gzip(std::string_view accept_encoding) {
+bool accepts_gzip(std::string_view accept_encoding) {
   bool any = false;
   while (!accept_encoding.empty()) {
     auto coding = split_off(accept_encoding, ',');
     const auto name = split_off(coding, ';');
     const bool taken = !is_forbidden(icd::trim(coding, " \t"));
-    if (icd::same_but_for_case(name, "gzip") || icd::same_but_for_case(name, "x-gzip")) return taken;
+    if (icd::equals_ignoring_case(name, "gzip") || icd::equals_ignoring_case(name, "x-gzip")) return taken;
     if (name == "*") any = taken;
   }
   return any;
@@ -62,8 +62,8 @@ bool is_packed(const intake::Answer& answer) {
   return has_header(answer, "Content-Encoding");
 }
 
-void pack_if_it_pays(intake::Answer& answer) {
-  if (!pays(answer)) return;
+void pack_if_worthwhile(intake::Answer& answer) {
+  if (!is_worth_packing(answer)) return;
   answer.headers.push_back({"Vary", "Accept-Encoding"});
   const std::span bytes(reinterpret_cast<const std::uint8_t*>(answer.body.data()), answer.body.size());
   const auto member = codec::gzip(bytes, codec::kFastestLevel, bytes.size());
@@ -88,14 +88,14 @@ intake::Answer add_headers(intake::Answer answer) {
   return answer;
 }
 
-intake::Answer fresh(std::string content_type, std::string body) {
+intake::Answer uncached_answer(std::string content_type, std::string body) {
   return add_headers({.content_type = std::move(content_type),
                       .body = std::move(body),
                       .headers = {{"Cache-Control", "no-store"}}});
 }
 
 intake::Answer object(codec::Value::Object members) {
-  return fresh("application/json", codec::write_json({std::move(members)}));
+  return uncached_answer("application/json", codec::write_json({std::move(members)}));
 }
 
 intake::Answer download(intake::Answer answer, const std::string& name) {
@@ -167,7 +167,7 @@ class RedactedResponder final : public intake::PassingResponder {
       : PassingResponder(std::move(responder)), redaction_(std::move(redaction)), takes_gzip_(takes_gzip) {}
   void answer(intake::Answer answer) override {
     if (!is_packed(answer)) redact(**redaction_, answer.content_type, answer.body);
-    if (takes_gzip_) pack_if_it_pays(answer);
+    if (takes_gzip_) pack_if_worthwhile(answer);
     inner().answer(std::move(answer));
   }
   std::shared_ptr<intake::Stream> stream(std::string_view content_type) override {
@@ -198,7 +198,7 @@ std::shared_ptr<intake::Responder> redact_answers(std::shared_ptr<intake::Respon
                                                   PresentRedaction redaction,
                                                   const intake::RequestHead& head) {
   return std::make_shared<RedactedResponder>(std::move(responder), std::move(redaction),
-                                             takes_gzip(head.header("Accept-Encoding")));
+                                             accepts_gzip(head.header("Accept-Encoding")));
 }
 
 }  // namespace adit::api

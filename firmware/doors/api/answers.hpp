@@ -16,7 +16,7 @@ namespace adit::api {
 
 /// Whether a client with this Accept-Encoding accepts gzip (RFC 9110 12.5.3). Without the header it does not,
 /// because scripts expect plain text.
-bool takes_gzip(std::string_view accept_encoding);
+bool accepts_gzip(std::string_view accept_encoding);
 
 /// Whether an answer's body is compressed by gzip.
 bool is_packed(const intake::Answer& answer);
@@ -24,18 +24,18 @@ bool is_packed(const intake::Answer& answer);
 /// Compresses an answer's body with gzip if that pays: text and JSON of some kB up to 1 MiB. The limit exists
 /// because the loop does it (2 ms for each 256 KiB on a desk machine). A body with an ETag stays unchanged,
 /// because the ETag names its bytes.
-void pack_if_it_pays(intake::Answer& answer);
+void pack_if_worthwhile(intake::Answer& answer);
 
 /// Adds headers against loading, framing and content sniffing.
 intake::Answer add_headers(intake::Answer answer);
 
 /// 200, not cached.
-intake::Answer fresh(std::string content_type, std::string body);
+intake::Answer uncached_answer(std::string content_type, std::string body);
 
 /// The same for a row or rows, as JSON.
 template <class Rows>
-intake::Answer fresh(const Rows& rows) {
-  return fresh("application/json", codec::to_json(rows));
+intake::Answer uncached_answer(const Rows& rows) {
+  return uncached_answer("application/json", codec::to_json(rows));
 }
 
 /// The same for a JSON object.
@@ -51,7 +51,7 @@ intake::Answer refusal_answer(const std::vector<settings::Error>& errors);
 /// The answer to an action of an interface such as Clock: its state(), or the refusal.
 template <class Part>
 intake::Answer answer_after(const Part& part, const icd::Checked<void>& done) {
-  return done ? fresh(part.state()) : refusal_answer(done.error());
+  return done ? uncached_answer(part.state()) : refusal_answer(done.error());
 }
 /// Refusal of a change of the settings. 409 while another change is being applied (api::Setup) has
 /// Retry-After, because that takes a second.

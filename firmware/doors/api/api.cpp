@@ -16,7 +16,7 @@ namespace adit::api {
 namespace {
 
 /// The refusal of a body by its headers, or std::nullopt.
-std::optional<intake::Answer> unfit(const Body& body, const intake::RequestHead& head) {
+std::optional<intake::Answer> check_headers(const Body& body, const intake::RequestHead& head) {
   if (body.type.empty()) return std::nullopt;
   const std::string_view type = head.header("Content-Type");
   const bool fits = body.as_it_comes ? type == body.type : codec::format_of(type) == codec::Format::Json;
@@ -33,7 +33,7 @@ SharedRedaction share_redaction(icd::Redaction redaction) {
 
 }  // namespace
 
-Api::Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> tokens,
+Api::Api(loop::Loop& loop, const ApiServices& served, std::vector<icd::BearerToken> tokens,
          icd::Redaction redaction)
     : setup_(served.setup),
       certificate_(served.certificate),
@@ -70,7 +70,7 @@ std::unique_ptr<intake::BodySink> Api::open(const intake::RequestHead& head,
     return answer_with(found.allowed.empty() ? refusal_answer(nothing_at(head.path()))
                                              : wrong_method(found.allowed));
   const Route& route = *found.route;
-  if (auto why = unfit(route.body, head)) return answer_with(std::move(*why));
+  if (auto why = check_headers(route.body, head)) return answer_with(std::move(*why));
   Call call{.head = head,
             .responder = std::move(responder),
             .flow = std::move(flow),

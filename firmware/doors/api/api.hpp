@@ -20,7 +20,7 @@
 namespace adit::api {
 
 /// The gateway's parts that the API uses.
-struct Served {
+struct ApiServices {
   Source& source;
   Operator& decisions;
   GatewayControl& gateway_control;
@@ -32,7 +32,7 @@ struct Served {
   Box& box;
   KeptRuns& runs;
   Clock& clock;
-  FinerMap& finer;
+  FineMap& finer;
   CoveredMap& covered;
   Spare& spare;
   Certificate& certificate;
@@ -47,7 +47,7 @@ class Api final : public intake::Handler {
  public:
   /// `tokens`: each admits a script as an operator. `redaction`: applied to every answer. The other arguments
   /// must outlive this object, and all work and answers in progress.
-  Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> tokens,
+  Api(loop::Loop& loop, const ApiServices& served, std::vector<icd::BearerToken> tokens,
       icd::Redaction redaction = icd::Redaction());
 
   intake::Credentials read_credentials(const intake::RequestHead& head) override {
@@ -72,7 +72,7 @@ class Api final : public intake::Handler {
   const Certificate& certificate_;
   const std::shared_ptr<SharedRedaction> redaction_;
   Authenticator authenticator_;
-  Live live_;
+  RunStream live_;
   PageRoutes pages_;
   SessionRoutes sessions_;
   RunRoutes run_;

@@ -59,7 +59,7 @@ const access::Device* Authenticator::device(const intake::RequestHead& head) {
   return nullptr;
 }
 
-std::function<bool()> Authenticator::may_stay(const Asker& asker) {
+std::function<bool()> Authenticator::access_check(const Asker& asker) {
   if (asker.session == 0) return [] { return true; };
   return [this, number = asker.session] { return keys_.sessions().touch(number, loop_.now()); };
 }

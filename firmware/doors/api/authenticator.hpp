@@ -32,7 +32,7 @@ class Authenticator {
   /// The client's known device, or null. As Devices::find().
   const access::Device* device(const intake::RequestHead& head);
   /// Whether the client may still receive a long answer. This object must outlive the result.
-  std::function<bool()> may_stay(const Asker& asker);
+  std::function<bool()> access_check(const Asker& asker);
 
  private:
   loop::Loop& loop_;

@@ -41,10 +41,10 @@ struct LogFilter {
   std::string text;         // part of the line, ignoring case; "": any
   std::uint64_t after = 0;  // only larger numbers
 
-  bool lets(const LogRecord& record) const;
+  bool matches(const LogRecord& record) const;
 };
 
-bool LogFilter::lets(const LogRecord& record) const {
+bool LogFilter::matches(const LogRecord& record) const {
   if (record.severity > severity || record.seq <= after) return false;
   const auto same = [](char a, char b) { return icd::lower(a) == icd::lower(b); };
   return text.empty() || !std::ranges::search(record.line, text, same).empty();
@@ -72,10 +72,10 @@ icd::Checked<LogFilter> read_log_filter(const intake::RequestHead& head) {
 }  // namespace
 
 std::string BoxRoutes::metrics_text() const {
-  Measured measured{.view = source_.view(),
-                    .reports = source_.report_counts(),
-                    .usage = box_.usage(),
-                    .about = box_.about()};
+  MetricsInput measured{.view = source_.view(),
+                        .reports = source_.report_counts(),
+                        .usage = box_.usage(),
+                        .about = box_.about()};
   for (const access::Session& session : keys_.sessions().all(loop_.now())) {
     ++(session.role == access::Role::Operator ? measured.operators : measured.viewers);
   }
@@ -83,27 +83,27 @@ std::string BoxRoutes::metrics_text() const {
 }
 
 intake::Answer BoxRoutes::metrics() const {
-  return fresh(Exposition::kContentType, metrics_text());
+  return uncached_answer(Exposition::kContentType, metrics_text());
 }
 
 icd::Checked<LogPage> BoxRoutes::log(const intake::RequestHead& head) const {
   const auto filter = ADIT_TRY(read_log_filter(head));
   auto records = box_.log(filter.after);
-  std::erase_if(records, [&](const LogRecord& record) { return !filter.lets(record); });
+  std::erase_if(records, [&](const LogRecord& record) { return !filter.matches(record); });
   return LogPage{box_.last_record_number(), std::move(records)};
 }
 
 std::string BoxRoutes::log_lines(const LogFilter& filter) const {
   std::string lines;
   for (const LogRecord& record : box_.log(filter.after)) {
-    if (filter.lets(record)) lines += record.line + "\n";
+    if (filter.matches(record)) lines += record.line + "\n";
   }
   return lines;
 }
 
 icd::Checked<intake::Answer> BoxRoutes::log_text(const intake::RequestHead& head) const {
   const auto filter = ADIT_TRY(read_log_filter(head));
-  return download(fresh("text/plain; charset=utf-8", log_lines(filter)), "adit-log.txt");
+  return download(uncached_answer("text/plain; charset=utf-8", log_lines(filter)), "adit-log.txt");
 }
 
 std::string BoxRoutes::about_json() const {
@@ -113,7 +113,7 @@ std::string BoxRoutes::about_json() const {
 }
 
 intake::Answer BoxRoutes::about() const {
-  return fresh("application/json", about_json());
+  return uncached_answer("application/json", about_json());
 }
 
 void BoxRoutes::bundle(const Call& call) {
@@ -142,7 +142,8 @@ void BoxRoutes::pack(const std::shared_ptr<intake::Responder>& responder, const 
     *packed = write_bundle(std::move(*files), bundle_name(now), now);
   };
   box_.work(write, [responder, packed, now] {
-    responder->answer(download(fresh("application/gzip", std::move(*packed)), bundle_name(now) + ".tar.gz"));
+    responder->answer(
+        download(uncached_answer("application/gzip", std::move(*packed)), bundle_name(now) + ".tar.gz"));
   });
 }
 
@@ -186,9 +187,9 @@ icd::Checked<void> confirm(Network& network, const Call& call) {
 namespace {
 
 /// Streams a body to an Upload.
-class Receiving final : public intake::BodySink {
+class UploadSink final : public intake::BodySink {
  public:
-  Receiving(std::unique_ptr<Upload> upload, std::uint64_t size, std::function<void(icd::Checked<void>)> done)
+  UploadSink(std::unique_ptr<Upload> upload, std::uint64_t size, std::function<void(icd::Checked<void>)> done)
       : upload_(std::move(upload)), size_(size), done_(std::move(done)) {}
   bool on_body(std::span<const std::uint8_t> piece) override {
     if (!upload_) return true;
@@ -196,20 +197,20 @@ class Receiving final : public intake::BodySink {
     if (!known) {
       const std::size_t more = std::min(piece.size(), update::kBundleHead - head_.size());
       head_.insert(head_.end(), piece.begin(), piece.begin() + static_cast<std::ptrdiff_t>(more));
-      if (head_.size() >= update::kBundleHead && !may_be_a_bundle()) return true;
+      if (head_.size() >= update::kBundleHead && !check_bundle()) return true;
     }
     return upload_->write(piece);
   }
   void on_end() override {
     const bool known = head_.size() >= update::kBundleHead;
-    if (upload_ && (known || may_be_a_bundle())) upload_->finish(std::move(done_));
+    if (upload_ && (known || check_bundle())) upload_->finish(std::move(done_));
   }
   void on_gone() override { upload_.reset(); }
 
  private:
   /// False: rejected, and the rest is discarded.
-  bool may_be_a_bundle() {
-    const std::string why = update::not_a_bundle(head_, size_);
+  bool check_bundle() {
+    const std::string why = update::bundle_error(head_, size_);
     if (why.empty()) return true;
     upload_.reset();
     done_(icd::unprocessable(why));
@@ -238,33 +239,33 @@ std::unique_ptr<intake::BodySink> update_routes::receive(Updates& updates, const
   if (!again.empty() && again != "0" && again != "1") return refuse(unprocessable("again: expected 0 or 1"));
   auto upload = updates.receive(*size, again == "1", [flow = call.flow] { flow->resume(); });
   if (!upload) return refuse(refusal_answer(upload.error()));
-  return std::make_unique<Receiving>(std::move(*upload), *size,
-                                     [&updates, responder = call.responder](const icd::Checked<void>& done) {
-                                       responder->answer(answer_after(updates, done));
-                                     });
+  return std::make_unique<UploadSink>(std::move(*upload), *size,
+                                      [&updates, responder = call.responder](const icd::Checked<void>& done) {
+                                        responder->answer(answer_after(updates, done));
+                                      });
 }
 
 namespace {
 
 /// Receives an export. Rejects other data by its first bytes and discards the rest.
-class ReceivingExport final : public intake::BodySink {
+class ExportSink final : public intake::BodySink {
  public:
-  explicit ReceivingExport(std::function<void(icd::Checked<std::string>)> done) : done_(std::move(done)) {}
+  explicit ExportSink(std::function<void(icd::Checked<std::string>)> done) : done_(std::move(done)) {}
 
   bool on_body(std::span<const std::uint8_t> piece) override {
     if (!done_) return true;
     file_.append(reinterpret_cast<const char*>(piece.data()), piece.size());
-    if (file_.size() >= spare::kExportHead) refuse_what_is_none();
+    if (file_.size() >= spare::kExportHead) check_export();
     return true;
   }
   void on_end() override {
-    if (done_) refuse_what_is_none();
+    if (done_) check_export();
     if (done_) std::exchange(done_, nullptr)(std::move(file_));
   }
 
  private:
-  void refuse_what_is_none() {
-    const std::string why = spare::not_an_export(file_);
+  void check_export() {
+    const std::string why = spare::export_error(file_);
     if (why.empty()) return;
     file_.clear();
     std::exchange(done_, nullptr)(icd::unprocessable(why));
@@ -287,11 +288,11 @@ Certificate::Done answer_with_state(const Certificate& certificate, const Call& 
 
 }  // namespace
 
-void take(Certificate& certificate, const Call& call) {
+void replace_certificate(Certificate& certificate, const Call& call) {
   if (!call.head.is_secure() && !is_from_this_machine(call.head))
     return call.responder->answer(
         refusal(icd::Status::Conflict, "upload the certificate by HTTPS, because others could read its key"));
-  certificate.take(call.body, answer_with_state(certificate, call));
+  certificate.replace(call.body, answer_with_state(certificate, call));
 }
 
 void make(Certificate& certificate, const Call& call) {
@@ -305,11 +306,12 @@ namespace spare_routes {
 void send_export(Spare& spare, const Call& call) {
   spare.export_to([responder = call.responder](icd::Checked<std::string> file) {
     if (!file) return responder->answer(refusal_answer(file.error()));
-    responder->answer(download(fresh("application/octet-stream", *std::move(file)), "export.adit-spare"));
+    responder->answer(
+        download(uncached_answer("application/octet-stream", *std::move(file)), "export.adit-spare"));
   });
 }
 
-void to_stick(Spare& spare, const Call& call) {
+void export_to_stick(Spare& spare, const Call& call) {
   spare.export_to_stick([&spare, responder = call.responder](const icd::Checked<void>& done) {
     responder->answer(answer_after(spare, done));
   });
@@ -320,11 +322,10 @@ std::unique_ptr<intake::BodySink> begin_import(Spare& spare, const Call& call) {
     call.responder->answer(SmallBody::too_long(spare::kLargestExport, "export"));
     return nullptr;
   }
-  return std::make_unique<ReceivingExport>(
-      [&spare, responder = call.responder](icd::Checked<std::string> file) {
-        responder->answer(file ? answer_after(spare, spare.import_file(*std::move(file)))
-                               : refusal_answer(file.error()));
-      });
+  return std::make_unique<ExportSink>([&spare, responder = call.responder](icd::Checked<std::string> file) {
+    responder->answer(file ? answer_after(spare, spare.import_file(*std::move(file)))
+                           : refusal_answer(file.error()));
+  });
 }
 
 void open(Spare& spare, const Call& call) {

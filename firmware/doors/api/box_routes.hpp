@@ -60,7 +60,7 @@ icd::Checked<void> confirm(Network& network, const Call& call);
 /// The certificate for HTTPS: README.md.
 namespace certificate_routes {
 
-void take(Certificate& certificate, const Call& call);
+void replace_certificate(Certificate& certificate, const Call& call);
 void make(Certificate& certificate, const Call& call);
 
 }  // namespace certificate_routes
@@ -77,7 +77,7 @@ std::unique_ptr<intake::BodySink> receive(Updates& updates, const Call& call);
 namespace spare_routes {
 
 void send_export(Spare& spare, const Call& call);
-void to_stick(Spare& spare, const Call& call);
+void export_to_stick(Spare& spare, const Call& call);
 std::unique_ptr<intake::BodySink> begin_import(Spare& spare, const Call& call);
 void open(Spare& spare, const Call& call);
 icd::Checked<void> take_over(Spare& spare, const std::string& body);

@@ -225,10 +225,11 @@ constexpr Member kUpdate[] = {
     member<&UpdateView::why>("why", "why the box cannot be updated here"),
     member<&UpdateView::runs_here>("runs_here",
                                    "false: this machine has no adit-update, as a PC with its own updates"),
-    member<&UpdateView::status, &update::Status::running, &update::Running::compatible>("board"),
-    member<&UpdateView::status, &update::Status::running, &update::Running::version>("version"),
-    member<&UpdateView::status, &update::Status::running, &update::Running::slot>("slot", "running slot"),
-    member<&UpdateView::status, &update::Status::running, &update::Running::other>(
+    member<&UpdateView::status, &update::Status::running, &update::RunningSystem::compatible>("board"),
+    member<&UpdateView::status, &update::Status::running, &update::RunningSystem::version>("version"),
+    member<&UpdateView::status, &update::Status::running, &update::RunningSystem::slot>("slot",
+                                                                                        "running slot"),
+    member<&UpdateView::status, &update::Status::running, &update::RunningSystem::other>(
         "other_slot", "slot for the next update"),
     member<&UpdateView::status, &update::Status::trial>(
         "trial", "whether the running version was installed last and has not yet been healthy for a minute"),
@@ -353,7 +354,7 @@ constexpr Member kCommandPostSideMembers[] = {
 constexpr Row kCommandPostSide = {"CommandPostSide", kCommandPostSideMembers};
 
 /// The numbers as members of PendingNetwork.
-struct Wanted : codec::KindOf<network::Numbers> {
+struct WantedNumbers : codec::KindOf<network::Numbers> {
   static void read(const codec::Field& field, network::Numbers& numbers) {
     const codec::Field team = field.member("team"), post = field.member("command_post");
     if (!team.is<Value::Object>()) return team.refuse_kind("an object");
@@ -365,7 +366,7 @@ struct Wanted : codec::KindOf<network::Numbers> {
 
 constexpr Member kPendingMembers[] = {
     member<&PendingNetwork::until>("until", "seconds since 1970"),
-    member<&PendingNetwork::wanted>("").as(codec::kind_as<network::Numbers, Wanted>),
+    member<&PendingNetwork::wanted>("").as(codec::kind_as<network::Numbers, WantedNumbers>),
     member<&PendingNetwork::previous>("previous", "addresses to which the box returns"),
     member<&PendingNetwork::page>("page", "address of the page to confirm on"),
 };

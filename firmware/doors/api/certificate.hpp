@@ -25,7 +25,7 @@ class Certificate {
   virtual ~Certificate() = default;
   virtual CertificateView state() const = 0;
   /// Replaces the certificate by a key and its certificates (PEM), once they are checked. Calls `done` later.
-  virtual void take(const std::string& pem, Done done) = 0;
+  virtual void replace(const std::string& pem, Done done) = 0;
   /// Replaces the certificate by a new one of the box's own. Calls `done` later.
   virtual void make(Done done) = 0;
 };

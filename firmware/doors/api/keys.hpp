@@ -54,7 +54,7 @@ class Keys {
   /// operator's without the present one or the code.
   virtual bool set_up_open() const = 0;
   /// Whether the button was pressed within the last minute.
-  virtual bool somebody_at_box() const = 0;
+  virtual bool is_operator_at_box() const = 0;
 
   /// Passes the role of the password to `done`, or std::nullopt. `address`: the client's, for the log.
   virtual void check(std::string password, std::string address,

@@ -21,7 +21,7 @@ struct KindOf<picture::Area> : KindOfRow<picture::Area, api::kArea> {};
 template <>
 struct KindOf<picture::Heights> : KindOfRow<picture::Heights, api::kHeights> {};
 template <>
-struct KindOf<picture::Finer> : KindOfRow<picture::Finer, api::kFiner> {};
+struct KindOf<picture::FinerLevels> : KindOfRow<picture::FinerLevels, api::kFiner> {};
 template <>
 struct KindOf<picture::LayerView> : KindOfRow<picture::LayerView, api::kLayer> {};
 
@@ -80,9 +80,9 @@ constexpr Member kHeightsMembers[] = {
 constexpr Row kHeights = {"", kHeightsMembers, "Metres."};
 
 constexpr Member kFinerMembers[] = {
-    member<&picture::Finer::level>("level", "finest level: -1 or -2"),
-    member<&picture::Finer::version>("version"),
-    member<&picture::Finer::area>("area", "area that changed"),
+    member<&picture::FinerLevels::level>("level", "finest level: -1 or -2"),
+    member<&picture::FinerLevels::version>("version"),
+    member<&picture::FinerLevels::area>("area", "area that changed"),
 };
 constexpr Row kFiner = {"", kFinerMembers, "The finer tiles that exist now."};
 
@@ -159,7 +159,7 @@ MapView map_view(const picture::Mosaic& map, std::uint64_t since) {
       .layers = map.layers(since)};
 }
 
-CoveredView covered_view(const picture::Covered& covered) {
+CoveredView covered_view(const picture::Coverage& covered) {
   CoveredView view{.version = covered.version,
                    .square_metres = picture::square_metres(covered.all),
                    .whole = covered.is_whole,

@@ -50,7 +50,7 @@ struct CoveredView {
   static const codec::Row kRow;
 };
 
-CoveredView covered_view(const picture::Covered& covered);
+CoveredView covered_view(const picture::Coverage& covered);
 
 /// Includes only tiles that changed after version `since`.
 MapView map_view(const picture::Mosaic& map, std::uint64_t since);

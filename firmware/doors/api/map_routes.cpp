@@ -59,24 +59,24 @@ Tracks thin_tracks(std::vector<Track> tracks) {
 constexpr std::string_view kMerged = "-";  // stands for the robot "", which a path cannot name
 
 /// A layer, its time and its colours.
-struct LayerAsked {
+struct LayerRequest {
   picture::Layer layer;
   std::optional<double> stamp, low, high;
   std::optional<picture::Colour> from, to;  // for free or lowest, and for occupied or highest
 };
 
 /// A request for a tile: place, colours, and the client's cached state.
-struct TileAsked {
-  LayerAsked in;
+struct TileRequest {
+  LayerRequest in;
   picture::TileIndex at;
   std::string has;  // If-None-Match
 };
 
 /// A request for several tiles of a layer.
-struct TilesAsked {
+struct TilesRequest {
   static constexpr std::size_t kMost = 64;
 
-  LayerAsked in;
+  LayerRequest in;
   std::vector<picture::TileIndex> at;
 };
 
@@ -108,7 +108,7 @@ std::optional<picture::Colour> colour_in(std::string_view text) {
   return picture::Colour{part(16), part(8), part(0)};
 }
 
-std::string colour_tile(const picture::Packed& tile, const LayerAsked& asked) {
+std::string colour_tile(const picture::PackedTile& tile, const LayerRequest& asked) {
   const bool is_coloured = asked.from && asked.to;
   if (asked.layer.kind == picture::LayerKind::Grid) {
     return is_coloured ? picture::write_png(tile, picture::grid_palette(*asked.from, *asked.to))
@@ -120,15 +120,15 @@ std::string colour_tile(const picture::Packed& tile, const LayerAsked& asked) {
 }
 
 /// Identifies a tile's state across restarts.
-std::string etag_of(const picture::Packed& tile) {
+std::string etag_of(const picture::PackedTile& tile) {
   return icd::sentence("\"", tile.crc, "-", tile.deflated.size(), "\"");
 }
 
-intake::Answer nothing_drawn() {
+intake::Answer no_tile_answer() {
   return refusal(icd::Status::NotFound, "this tile is empty");
 }
 
-intake::Answer image_of(const picture::Packed& tile, const TileAsked& asked, std::string_view kept) {
+intake::Answer image_of(const picture::PackedTile& tile, const TileRequest& asked, std::string_view kept) {
   intake::Answer answer{.content_type = "image/png", .body = {}, .headers = {}};
   const std::string etag = etag_of(tile);
   answer.headers = {{"ETag", etag}, {"Cache-Control", std::string(kept)}};
@@ -154,7 +154,7 @@ icd::Checked<Time> time_asked(const intake::RequestHead& head) {
 }
 
 /// `parts`: kind and robot from the path.
-icd::Checked<LayerAsked> layer_asked(const intake::RequestHead& head, std::span<const std::string> parts) {
+icd::Checked<LayerRequest> layer_asked(const intake::RequestHead& head, std::span<const std::string> parts) {
   if (parts[0] != "grid" && parts[0] != "cloud") return std::unexpected(nothing_at(head.path()));
   const auto at = ADIT_TRY(asked_number(head, "at", "at: expected seconds since 1970"));
   const auto low = ADIT_TRY(asked_number(head, "low", "low and high: expected metres"));
@@ -165,7 +165,7 @@ icd::Checked<LayerAsked> layer_asked(const intake::RequestHead& head, std::span<
     return icd::refuse(Status::BadRequest,
                        "from and to: expected both or neither, each with six hexadecimal digits, as in "
                        "2266ee");
-  return LayerAsked{
+  return LayerRequest{
       .layer = {.robot = parts[1] == kMerged ? "" : parts[1],
                 .kind = parts[0] == "grid" ? picture::LayerKind::Grid : picture::LayerKind::Cloud},
       .stamp = at,
@@ -191,20 +191,20 @@ std::optional<picture::TileIndex> place_in(std::span<const std::string> parts) {
 }
 
 /// `parts`: kind, robot, level, x and y from the path.
-icd::Checked<TileAsked> tile_asked(const intake::RequestHead& head, std::span<const std::string> parts) {
+icd::Checked<TileRequest> tile_asked(const intake::RequestHead& head, std::span<const std::string> parts) {
   auto in = ADIT_TRY(layer_asked(head, parts.first(2)));
   const auto at = place_in(parts.subspan(2));
   if (!at) return std::unexpected(nothing_at(head.path()));
   if (in.stamp && at->level < 0)
     return icd::refuse(Status::BadRequest, "at: finer levels exist only for now");
-  return TileAsked{.in = std::move(in), .at = *at, .has = std::string(head.header("If-None-Match"))};
+  return TileRequest{.in = std::move(in), .at = *at, .has = std::string(head.header("If-None-Match"))};
 }
 
 /// `parts`: kind and robot from the path.
-icd::Checked<TilesAsked> tiles_asked(const intake::RequestHead& head, std::span<const std::string> parts) {
-  TilesAsked asked{.in = ADIT_TRY(layer_asked(head, parts.first(2))), .at = {}};
+icd::Checked<TilesRequest> tiles_asked(const intake::RequestHead& head, std::span<const std::string> parts) {
+  TilesRequest asked{.in = ADIT_TRY(layer_asked(head, parts.first(2))), .at = {}};
   const auto places = split(head.query("tiles"), ',');
-  bool is_valid = !places.empty() && places.size() <= TilesAsked::kMost;
+  bool is_valid = !places.empty() && places.size() <= TilesRequest::kMost;
   for (const std::string& place : places) {
     const auto at = place_in(split(place, '/'));
     is_valid = is_valid && at && at->level >= 0;
@@ -212,14 +212,14 @@ icd::Checked<TilesAsked> tiles_asked(const intake::RequestHead& head, std::span<
   }
   if (is_valid) return asked;
   return icd::refuse(Status::BadRequest,
-                     icd::sentence("tiles: expected 1 to ", TilesAsked::kMost,
+                     icd::sentence("tiles: expected 1 to ", TilesRequest::kMost,
                                    " places with commas between them, as in 0/3/-2,0/4/-2"));
 }
 
 /// The PNG, or the reason for its absence.
-intake::Answer tile_of(const picture::Mosaic& map, const TileAsked& asked) {
+intake::Answer tile_of(const picture::Mosaic& map, const TileRequest& asked) {
   const auto shown = map.tile(asked.in.layer, asked.at, asked.in.stamp);
-  if (shown.tile == nullptr) return nothing_drawn();
+  if (shown.tile == nullptr) return no_tile_answer();
   // An earlier state never changes; the newest must be revalidated.
   intake::Answer answer = image_of(*shown.tile, asked, shown.newest ? "no-cache" : "max-age=3600");
   // So that a replay requests a tile only when it changes.
@@ -229,7 +229,7 @@ intake::Answer tile_of(const picture::Mosaic& map, const TileAsked& asked) {
 }
 
 /// A line with the head of each tile in JSON, then their PNGs.
-intake::Answer tiles_of(const picture::Mosaic& map, const TilesAsked& asked) {
+intake::Answer tiles_of(const picture::Mosaic& map, const TilesRequest& asked) {
   TilesHead head;
   std::string images;
   for (const picture::TileIndex& at : asked.at) {
@@ -242,11 +242,11 @@ intake::Answer tiles_of(const picture::Mosaic& map, const TilesAsked& asked) {
     tile.until = shown.until;
     images += image;
   }
-  return fresh("application/octet-stream", codec::to_json(head) + '\n' + images);
+  return uncached_answer("application/octet-stream", codec::to_json(head) + '\n' + images);
 }
 
 /// The same for a drawn tile of a finer level. Null: 204, because the client cannot know which tiles exist.
-intake::Answer finer_tile(const picture::Tile& tile, const TileAsked& asked) {
+intake::Answer finer_tile(const picture::Tile& tile, const TileRequest& asked) {
   return add_headers(tile ? image_of(*tile, asked, "no-cache")
                           : intake::Answer{.status = icd::Status::NoContent,
                                            .body = {},
@@ -258,7 +258,7 @@ intake::Answer finer_tile(const picture::Tile& tile, const TileAsked& asked) {
 icd::Checked<MapView> MapRoutes::layers(const intake::RequestHead& head) const {
   const auto since = ADIT_TRY(version_asked(head));
   MapView view = map_view(source_.map(), since);
-  for (picture::LayerView& layer : view.layers) layer.finer = finer_.finer(layer.layer, since);
+  for (picture::LayerView& layer : view.layers) layer.finer = finer_.finer_levels(layer.layer, since);
   return view;
 }
 
@@ -289,8 +289,8 @@ void MapRoutes::tiles(const Call& call) const {
 }
 
 void MapRoutes::covered(const Call& call) const {
-  covered_.count([responder = call.responder](const icd::Checked<picture::Covered>& covered) {
-    responder->answer(covered ? fresh(covered_view(*covered)) : refusal_answer(covered.error()));
+  covered_.count([responder = call.responder](const icd::Checked<picture::Coverage>& covered) {
+    responder->answer(covered ? uncached_answer(covered_view(*covered)) : refusal_answer(covered.error()));
   });
 }
 
@@ -347,7 +347,7 @@ void KeptRunsRoutes::on_run_read(const std::string& key,
                                  const icd::Checked<std::shared_ptr<const KeptRun>>& run) {
   const auto waiting = std::exchange(waiting_[key], {});
   waiting_.erase(key);
-  for (const Waiting& each : waiting)
+  for (const QueuedRequest& each : waiting)
     each.responder->answer(run ? each.answer(**run) : refusal_answer(run.error()));
   const auto row = row_of(key);
   if (!run || !row || row->is_present) return;  // the present run changes
@@ -358,7 +358,8 @@ void KeptRunsRoutes::on_run_read(const std::string& key,
 void KeptRunsRoutes::layers(const Call& call) {
   const auto since = version_asked(call.head);
   if (!since) return call.responder->answer(refusal_answer(since.error()));
-  with_run(call, [since = *since](const KeptRun& run) { return fresh(map_view(run.picture, since)); });
+  with_run(call,
+           [since = *since](const KeptRun& run) { return uncached_answer(map_view(run.picture, since)); });
 }
 
 void KeptRunsRoutes::tile(const Call& call) {
@@ -374,15 +375,15 @@ void KeptRunsRoutes::tiles(const Call& call) {
 }
 
 void KeptRunsRoutes::tracks(const Call& call) {
-  with_run(call, [](const KeptRun& run) { return fresh(thin_tracks(run.tracks)); });
+  with_run(call, [](const KeptRun& run) { return uncached_answer(thin_tracks(run.tracks)); });
 }
 
 void KeptRunsRoutes::plots(const Call& call) {
-  with_run(call, [](const KeptRun& run) { return fresh(run.history); });
+  with_run(call, [](const KeptRun& run) { return uncached_answer(run.history); });
 }
 
 /// Collects the reports of a run, some in each turn of the loop.
-struct KeptRunsRoutes::Gathering {
+struct KeptRunsRoutes::ReportCollector {
   std::string key;
   std::int64_t run = 0, last = 0;
   std::vector<ReportDetail> reports;
@@ -392,10 +393,11 @@ struct KeptRunsRoutes::Gathering {
 void KeptRunsRoutes::report(const Call& call) {
   const auto row = row_of(call.parameters.front());
   if (!row) return call.responder->answer(refusal_answer(row.error()));
-  gather(std::make_shared<Gathering>(row->key, row->run, 0, std::vector<ReportDetail>(), call.responder));
+  collect_reports(
+      std::make_shared<ReportCollector>(row->key, row->run, 0, std::vector<ReportDetail>(), call.responder));
 }
 
-void KeptRunsRoutes::gather(const std::shared_ptr<Gathering>& gathering) {
+void KeptRunsRoutes::collect_reports(const std::shared_ptr<ReportCollector>& gathering) {
   const auto rows = source_.reports(gathering->last, kDetailsInATurn);
   for (const facts::ReportRow& row : rows) {
     gathering->last = row.number;
@@ -403,7 +405,7 @@ void KeptRunsRoutes::gather(const std::shared_ptr<Gathering>& gathering) {
     if (auto detail = source_.report(row.number)) gathering->reports.push_back(std::move(*detail));
   }
   if (rows.size() == kDetailsInATurn) {
-    return loop_.post([this, gathering] { gather(gathering); });
+    return loop_.post([this, gathering] { collect_reports(gathering); });
   }
   runs_.report(gathering->key, std::move(gathering->reports), source_.view().colours,
                [responder = gathering->responder](icd::Checked<std::string> html) {

@@ -20,7 +20,7 @@ namespace adit::api {
 class MapRoutes {
  public:
   /// All must outlive this object.
-  MapRoutes(Source& source, FinerMap& finer, CoveredMap& covered)
+  MapRoutes(Source& source, FineMap& finer, CoveredMap& covered)
       : source_(source), finer_(finer), covered_(covered) {}
 
   icd::Checked<MapView> layers(const intake::RequestHead& head) const;
@@ -32,7 +32,7 @@ class MapRoutes {
 
  private:
   Source& source_;
-  FinerMap& finer_;
+  FineMap& finer_;
   CoveredMap& covered_;
 };
 
@@ -62,14 +62,14 @@ class KeptRunsRoutes {
 
  private:
   using Answering = std::function<intake::Answer(const KeptRun& run)>;
-  struct Waiting {
+  struct QueuedRequest {
     std::shared_ptr<intake::Responder> responder;
     Answering answer;
   };
-  struct Gathering;
+  struct ReportCollector;
   void with_run(const Call& call, Answering answer);
   void on_run_read(const std::string& key, const icd::Checked<std::shared_ptr<const KeptRun>>& run);
-  void gather(const std::shared_ptr<Gathering>& gathering);
+  void collect_reports(const std::shared_ptr<ReportCollector>& gathering);
   /// Error: 404, or 503 if the list may lack a run.
   icd::Checked<RunRow> row_of(const std::string& key) const;
 
@@ -78,7 +78,7 @@ class KeptRunsRoutes {
   Source& source_;
   loop::Source forget_;
   std::shared_ptr<const KeptRun> held_;
-  std::map<std::string, std::vector<Waiting>> waiting_;
+  std::map<std::string, std::vector<QueuedRequest>> waiting_;
 };
 
 }  // namespace adit::api

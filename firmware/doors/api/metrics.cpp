@@ -51,7 +51,7 @@ void add_rows(Exposition& out, std::string_view name, std::string_view help, con
   }
 }
 
-void write_box(Exposition& out, const Measured& measured) {
+void write_box(Exposition& out, const MetricsInput& measured) {
   const Usage& usage = measured.usage;
   out.begin("adit_build_info", "Version of the running program; always 1.");
   out.sample({{"version", measured.about.version}, {"build", measured.about.build}}, 1);
@@ -138,7 +138,7 @@ void write_endpoints(Exposition& out, const RunView& view) {
       &facts::EndpointRow::foreign);
 }
 
-void write_link(Exposition& out, const Measured& measured) {
+void write_link(Exposition& out, const MetricsInput& measured) {
   const RunView& view = measured.view;
   out.add("adit_link_sent_bytes_total", "Bytes of bodies sent to both endpoints.", measured.usage.sent_bytes);
   out.add("adit_link_rate_bytes_per_second", "Rate of these bytes over the last seconds.",
@@ -233,7 +233,7 @@ void Exposition::write_sample(std::span<const Label> labels, double value) {
   text_.append(" ").append(sample_text(value)).append("\n");
 }
 
-std::string write_metrics(const Measured& measured) {
+std::string write_metrics(const MetricsInput& measured) {
   Exposition out;
   write_box(out, measured);
   write_alarms(out, measured.view.alarms);

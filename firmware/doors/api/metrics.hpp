@@ -37,7 +37,7 @@ class Exposition {
 };
 
 /// Input of the metrics.
-struct Measured {
+struct MetricsInput {
   RunView view;
   ReportCounts reports;  // of all runs
   Usage usage;
@@ -46,6 +46,6 @@ struct Measured {
 };
 
 /// /metrics: each metric with HELP and TYPE. Names: README.md.
-std::string write_metrics(const Measured& measured);
+std::string write_metrics(const MetricsInput& measured);
 
 }  // namespace adit::api

@@ -30,7 +30,7 @@ constexpr const char* kAskEachTime = "no-cache";                         // reva
 
 /// An embedded file, compressed as stored, or inflated for a client without gzip.
 intake::Answer answer_with(const site::File& file, const intake::RequestHead& head) {
-  const bool as_it_is = takes_gzip(head.header("Accept-Encoding"));
+  const bool as_it_is = accepts_gzip(head.header("Accept-Encoding"));
   const std::string etag = '"' + std::string(file.etag) + (as_it_is ? "-gzip\"" : "\"");  // of these bytes
   intake::Answer answer{.content_type = std::string(site::content_type_of(file)), .body = {}, .headers = {}};
   answer.headers.push_back({"ETag", etag});

@@ -40,10 +40,10 @@ ListForm json_list() {
 
 void ReportLists::write(ListForm form, std::optional<std::int64_t> run,
                         std::function<void(std::string list)> done) const {
-  go_on(std::make_shared<Listing>(std::move(form), run, std::move(done)));
+  continue_listing(std::make_shared<Listing>(std::move(form), run, std::move(done)));
 }
 
-void ReportLists::go_on(const std::shared_ptr<Listing>& listing) const {
+void ReportLists::continue_listing(const std::shared_ptr<Listing>& listing) const {
   const auto rows = source_.reports(listing->last, kInATurn);
   for (const facts::ReportRow& row : rows) {
     listing->last = row.number;
@@ -52,7 +52,7 @@ void ReportLists::go_on(const std::shared_ptr<Listing>& listing) const {
     listing->text += listing->form.row(row);
   }
   if (rows.size() == kInATurn) {
-    return loop_.post([this, listing] { go_on(listing); });
+    return loop_.post([this, listing] { continue_listing(listing); });
   }
   listing->done(std::move(listing->text.append(listing->form.end)));
 }
@@ -63,7 +63,7 @@ namespace {
 constexpr std::string_view kAll = "all", kPresent = "present";
 constexpr auto kAccepted = static_cast<icd::Status>(202);  // RFC 9110 15.3.3; not in the ICD
 
-std::unexpected<icd::Refusal> no_such(std::int64_t number) {
+std::unexpected<icd::Refusal> not_found(std::int64_t number) {
   return icd::refuse(icd::Status::NotFound, "there is no report ", number);
 }
 
@@ -101,21 +101,21 @@ void ReportRoutes::send_list(const Call& call, ListForm form, intake::Answer beg
 }
 
 void ReportRoutes::list(const Call& call) const {
-  send_list(call, json_list(), fresh("application/json", ""));
+  send_list(call, json_list(), uncached_answer("application/json", ""));
 }
 
 void ReportRoutes::csv(const Call& call) const {
   send_list(call, {.begin = csv_header(), .row = csv_line, .between = "", .end = ""},
-            download(fresh("text/csv; charset=utf-8; header=present", ""), "adit-reports.csv"));
+            download(uncached_answer("text/csv; charset=utf-8; header=present", ""), "adit-reports.csv"));
 }
 
 icd::Checked<ReportDetail> ReportRoutes::one(std::int64_t number) const {
   if (auto report = source_.report(number)) return *std::move(report);
-  return no_such(number);
+  return not_found(number);
 }
 
 icd::Checked<intake::Answer> ReportRoutes::decide(std::int64_t number, Action action) {
-  if (!source_.report(number)) return no_such(number);
+  if (!source_.report(number)) return not_found(number);
   const auto moved = operator_.decide(number, action);
   if (!moved) return icd::conflict(moved.error());
   return object({{"report", json(*moved)}});
@@ -132,7 +132,7 @@ icd::Checked<intake::Answer> ReportRoutes::compose(const std::string& body) {
 icd::Checked<intake::Answer> ReportRoutes::correct(const Call& call) {
   const auto number = icd::number_in<std::int64_t>(call.parameters.front());
   if (!number) return std::unexpected(nothing_at(call.head.path()));
-  if (!source_.report(*number)) return no_such(*number);
+  if (!source_.report(*number)) return not_found(*number);
   return accept(call.body, [this, number](const icd::ArtifactReport& report, bool /*resubmit*/) {
     return operator_.correct(*number, report);
   });

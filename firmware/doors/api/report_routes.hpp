@@ -38,7 +38,7 @@ class ReportLists {
 
  private:
   struct Listing;
-  void go_on(const std::shared_ptr<Listing>& listing) const;
+  void continue_listing(const std::shared_ptr<Listing>& listing) const;
 
   loop::Loop& loop_;
   Source& source_;

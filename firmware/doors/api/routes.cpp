@@ -44,7 +44,7 @@ auto answer_result(const Handler& handler, Result result) {
   } else if constexpr (requires { result.error(); }) {
     return result ? answer_result(handler, *std::move(result)) : refusal_answer(result.error());
   } else if constexpr (requires { Result::kRow; }) {
-    return fresh(result);
+    return uncached_answer(result);
   } else {
     return result;
   }
@@ -318,17 +318,19 @@ constexpr Route kRoutes[] = {
     post("/adit/update/restart", Operator, kJson<1024>, handle_of<&Updates::restart, &anyway_in>(), "Restart",
          "box", "Restart the box, to run the installed update.", "The box restarts.", "Update",
          "400 409 503"),
-    post("/adit/update/back", Operator, kJson<1024>, handle_of<&Updates::go_back, &anyway_in>(), "Restart",
-         "box", "Restart the box into the expected slot, if an unexpected slot is running (`stray`).",
+    post("/adit/update/back", Operator, kJson<1024>, handle_of<&Updates::restart_proven_slot, &anyway_in>(),
+         "Restart", "box",
+         "Restart the box into the expected slot, if an unexpected slot is running (`stray`).",
          "The box restarts.", "Update", "400 409 503"),
-    post("/adit/update/stay", Operator, kJson<1024>, handle_of<&Updates::stay>(), "Nothing", "box",
-         "Keep the running slot, if it is not the expected one (`stray`).",
+    post("/adit/update/stay", Operator, kJson<1024>, handle_of<&Updates::keep_running_slot>(), "Nothing",
+         "box", "Keep the running slot, if it is not the expected one (`stray`).",
          "The slot is being recorded as the expected one.", "Update", "409 503"),
     get("/adit/certificate", Viewer, handle_of<&Certificate::state>(), "box",
         "Whether the box offers HTTPS, and its certificate's fingerprint.", "The certificate.",
         "Certificate"),
-    post("/adit/certificate", Operator, kCertificate, handle_of<&certificate_routes::take>(), "Certificate",
-         "box", "Replace the certificate for HTTPS by an uploaded one, once the box has checked it.",
+    post("/adit/certificate", Operator, kCertificate, handle_of<&certificate_routes::replace_certificate>(),
+         "Certificate", "box",
+         "Replace the certificate for HTTPS by an uploaded one, once the box has checked it.",
          "The certificate is in use; the TLS server restarts.", "Certificate", "409 503"),
     post("/adit/certificate/new", Operator, kJson<1024>, handle_of<&certificate_routes::make>(), "Nothing",
          "box", "Replace the certificate for HTTPS by a new one of the box's own.",
@@ -340,7 +342,7 @@ constexpr Route kRoutes[] = {
     get("/adit/spare", Operator, handle_of<&Spare::state>(), "box",
         "Whether the box is on standby, the code of its export, and the export of another box.", "The state.",
         "Spare"),
-    post("/adit/spare/standby", Operator, kJson<1024>, handle_of<&Spare::stand_by>(), "Nothing", "box",
+    post("/adit/spare/standby", Operator, kJson<1024>, handle_of<&Spare::enter_standby>(), "Nothing", "box",
          "Put the box on standby, so that a spare can take over: it accepts and sends no messages, also "
          "after a power cut.",
          "Standby is about to begin.", "Spare", "409 503"),
@@ -350,10 +352,10 @@ constexpr Route kRoutes[] = {
         "The export for the spare: ledger, settings and tokens, sealed by a code. Only while the box is on "
         "standby.",
         "The export.", "application/octet-stream", "409 503"),
-    post("/adit/spare/to-stick", Operator, kJson<1024>, handle_of<&spare_routes::to_stick>(), "Nothing",
-         "box", "Write the export to the stick in the box. Only while the box is on standby.",
+    post("/adit/spare/to-stick", Operator, kJson<1024>, handle_of<&spare_routes::export_to_stick>(),
+         "Nothing", "box", "Write the export to the stick in the box. Only while the box is on standby.",
          "The export is about to be written.", "Spare", "409 503"),
-    post("/adit/spare/from-stick", Operator, kJson<1024>, handle_of<&Spare::take_from_stick, &name_in>(),
+    post("/adit/spare/from-stick", Operator, kJson<1024>, handle_of<&Spare::import_from_stick, &name_in>(),
          "ExportOnStick", "box",
          "Import another box's export from the stick in the box. The box does not change yet.",
          "The export is about to be read.", "Spare", "400 409 503"),

@@ -14,7 +14,7 @@
 namespace adit::api {
 namespace {
 
-constexpr auto kSpacing = std::chrono::milliseconds{1000 / Live::kEventsPerSecond};
+constexpr auto kSpacing = std::chrono::milliseconds{1000 / RunStream::kEventsPerSecond};
 constexpr std::chrono::seconds kCalm{1};
 
 /// Rounds to milliseconds, millimetres or microseconds, which is finer than the page shows and halves the
@@ -27,7 +27,7 @@ double round_number(double number) {
 /// How long after the last event a patch may be sent. Clocks change all the time and are not news. An
 /// operator acts on reports and alarms.
 std::chrono::milliseconds spacing_of(const std::optional<codec::Value>& patch) {
-  std::chrono::milliseconds spacing = Live::kHeartbeat;
+  std::chrono::milliseconds spacing = RunStream::kHeartbeat;
   if (!patch) return spacing;
   for (const auto& [name, value] : std::get<codec::Value::Object>(patch->is)) {
     if (name == "reports" || name == "alarms") return kSpacing;
@@ -38,10 +38,10 @@ std::chrono::milliseconds spacing_of(const std::optional<codec::Value>& patch) {
 
 }  // namespace
 
-Live::Live(loop::Loop& loop, Source& source)
+RunStream::RunStream(loop::Loop& loop, Source& source)
     : loop_(loop), source_(source), timer_(loop.timer([this] { send_to_all(false); })) {}
 
-RunView Live::look() {
+RunView RunStream::take_view() {
   RunView view = source_.view();
   codec::change_numbers(RunView::kRow, &view, round_number);
   // Ages change all the time. Whole seconds keep events small.
@@ -55,14 +55,14 @@ RunView Live::look() {
   return view;
 }
 
-const std::string& Live::full_state() {
+const std::string& RunStream::full_state() {
   if (whole_.empty()) whole_ = "data: " + codec::to_json(told_) + "\n\n";
   whole_size_ = whole_.size();
   return whole_;
 }
 
-void Live::open(intake::Responder& responder, std::function<bool()> may_stay) {
-  if (pages_.size() >= kMostPages) drop_the_gone(":\n\n");
+void RunStream::open(intake::Responder& responder, std::function<bool()> has_access) {
+  if (pages_.size() >= kMostPages) drop_closed(":\n\n");
   if (pages_.size() >= kMostPages) {
     return responder.answer(intake::error_answer(
         icd::Status::ServiceUnavailable,
@@ -75,26 +75,26 @@ void Live::open(intake::Responder& responder, std::function<bool()> may_stay) {
   }
   auto stream = responder.stream("text/event-stream");
   if (!stream || !stream->send("retry: 1000\n" + full_state())) return;
-  pages_.push_back({std::move(stream), std::move(may_stay)});
+  pages_.push_back({std::move(stream), std::move(has_access)});
 }
 
-void Live::begin() {
-  told_ = look();
+void RunStream::begin() {
+  told_ = take_view();
   whole_.clear();
   looked_ = sent_ = loop_.now();
   dirty_ = false;
   timer_.call_at(sent_ + kHeartbeat);
 }
 
-void Live::on_changed() {
+void RunStream::on_changed() {
   if (pages_.empty() || std::exchange(dirty_, true)) return;
   timer_.call_at(std::max(loop_.now(), looked_ + kSpacing));
 }
 
-void Live::send_to_all(bool in_any_case) {
+void RunStream::send_to_all(bool in_any_case) {
   dirty_ = false;
   looked_ = loop_.now();
-  RunView now = look();
+  RunView now = take_view();
   const codec::Value nothing{codec::Value::Object()};
   const auto patch = codec::patch(told_, now);
   const auto spacing = spacing_of(patch);
@@ -102,27 +102,27 @@ void Live::send_to_all(bool in_any_case) {
     told_ = std::move(now);
     whole_.clear();
     sent_ = looked_;
-    drop_the_gone("event: patch\ndata: " + codec::write_json(patch.value_or(nothing)) + "\n\n");
+    drop_closed("event: patch\ndata: " + codec::write_json(patch.value_or(nothing)) + "\n\n");
     if (!pages_.empty()) timer_.call_at(sent_ + kHeartbeat);
   } else {
     timer_.call_at(sent_ + spacing);
   }
 }
 
-bool Live::tell(const OpenPage& page, std::string_view event) {
-  if (!page.may_stay()) return false;
+bool RunStream::send_event(const OpenPage& page, std::string_view event) {
+  if (!page.has_access()) return false;
   const bool is_slow = page.stream->waiting() + event.size() > 2 * whole_size_ + kMostPatches;
   return is_slow ? page.stream->send_instead(full_state()) : page.stream->send(event);
 }
 
-void Live::drop_the_gone(std::string_view event) {
-  std::erase_if(pages_, [&](const OpenPage& page) { return !tell(page, event); });
+void RunStream::drop_closed(std::string_view event) {
+  std::erase_if(pages_, [&](const OpenPage& page) { return !send_event(page, event); });
 }
 
 using codec::json;
 
 std::unique_ptr<intake::BodySink> RunRoutes::events(const Call& call) {
-  live_.open(*call.responder, authenticator_.may_stay(call.asker));
+  live_.open(*call.responder, authenticator_.access_check(call.asker));
   return nullptr;
 }
 

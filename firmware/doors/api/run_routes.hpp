@@ -18,7 +18,7 @@ namespace adit::api {
 /// run, then its changes (codec/patch.hpp), the same for all pages, and heartbeats. Changes come once a
 /// second, changes of reports or alarms at most kEventsPerSecond times. A slow page with too many queued
 /// bytes gets the whole view again.
-class Live {
+class RunStream {
  public:
   static constexpr int kEventsPerSecond = 4;
 
@@ -29,26 +29,26 @@ class Live {
   /// Most queued bytes for a page, beside two whole views: one in transfer and the next.
   static constexpr std::size_t kMostPatches = 64 * 1024;
 
-  Live(loop::Loop& loop, Source& source);
+  RunStream(loop::Loop& loop, Source& source);
 
-  /// Answers with a stream of events, or 503 beyond kMostPages. The stream ends once `may_stay` returns
+  /// Answers with a stream of events, or 503 beyond kMostPages. The stream ends once `has_access` returns
   /// false.
-  void open(intake::Responder& responder, std::function<bool()> may_stay);
+  void open(intake::Responder& responder, std::function<bool()> has_access);
   void on_changed();
 
  private:
   struct OpenPage {
     std::shared_ptr<intake::Stream> stream;
-    std::function<bool()> may_stay;
+    std::function<bool()> has_access;
   };
 
-  RunView look();
+  RunView take_view();
   void begin();
   void send_to_all(bool in_any_case);
   /// The state of the pages as an event.
   const std::string& full_state();
-  bool tell(const OpenPage& page, std::string_view event);
-  void drop_the_gone(std::string_view event);
+  bool send_event(const OpenPage& page, std::string_view event);
+  void drop_closed(std::string_view event);
 
   loop::Loop& loop_;
   Source& source_;
@@ -67,7 +67,7 @@ class RunRoutes {
   static constexpr double kLeast = 1, kMost = 60;  // seconds of flashing lights
 
   /// All must outlive this object.
-  RunRoutes(Source& source, Operator& decisions, GatewayControl& gateway_control, Live& live,
+  RunRoutes(Source& source, Operator& decisions, GatewayControl& gateway_control, RunStream& live,
             Authenticator& authenticator)
       : source_(source),
         operator_(decisions),
@@ -96,7 +96,7 @@ class RunRoutes {
   Source& source_;
   Operator& operator_;
   GatewayControl& gateway_control_;
-  Live& live_;
+  RunStream& live_;
   Authenticator& authenticator_;
 };
 

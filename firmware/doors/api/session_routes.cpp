@@ -58,12 +58,13 @@ std::string text_in(const codec::Field& object, std::string_view name) {
 intake::Answer SessionRoutes::session(const intake::RequestHead& head) {
   const auto visitor = authenticator_.find_visitor(head);
   const auto* const session = visitor ? visitor->session : nullptr;
-  return fresh(SessionView{.role = visitor ? std::optional(visitor->role) : std::nullopt,
-                           .csrf = session != nullptr ? std::string(session->csrf.reveal()) : std::string(),
-                           .first_start = keys_.first_start(),
-                           .set_up_open = keys_.set_up_open(),
-                           .secure = head.is_secure(),
-                           .https = certificate_.state().offered});
+  return uncached_answer(
+      SessionView{.role = visitor ? std::optional(visitor->role) : std::nullopt,
+                  .csrf = session != nullptr ? std::string(session->csrf.reveal()) : std::string(),
+                  .first_start = keys_.first_start(),
+                  .set_up_open = keys_.set_up_open(),
+                  .secure = head.is_secure(),
+                  .https = certificate_.state().offered});
 }
 
 intake::Answer SessionRoutes::sessions(const Call& call) {
@@ -81,14 +82,14 @@ intake::Answer SessionRoutes::sessions(const Call& call) {
                     .seen = time(each.seen),
                     .own = each.number == call.asker.session});
   }
-  return fresh(rows);
+  return uncached_answer(rows);
 }
 
 SessionRoutes::Poster SessionRoutes::poster_of(const Call& call) {
   const access::Device* const device = authenticator_.device(call.head);
   return {.guesser = {.address = call.head.peer(),
                       .device = device == nullptr ? 0 : device->number,
-                      .at_box = keys_.somebody_at_box()},
+                      .at_box = keys_.is_operator_at_box()},
           .agent = std::string(call.head.header("User-Agent")),
           .host = std::string(call.head.header("Host")),
           .is_secure = call.head.is_secure(),
@@ -96,7 +97,7 @@ SessionRoutes::Poster SessionRoutes::poster_of(const Call& call) {
           .responder = call.responder};
 }
 
-bool SessionRoutes::may_try(const Poster& poster) {
+bool SessionRoutes::check_limit(const Poster& poster) {
   if (!keys_.unread().empty()) {
     poster.responder->answer(refusal(icd::Status::ServiceUnavailable, keys_.unread()));
     return false;
@@ -121,7 +122,7 @@ void SessionRoutes::check_posted(const Call& call, Done done) {
 
 template <class Done>
 void SessionRoutes::check(const std::string& password, const Poster& poster, Done done) {
-  if (!may_try(poster)) return;
+  if (!check_limit(poster)) return;
   ++checking_;
   keys_.check(password, poster.guesser.address,
               [this, guesser = poster.guesser, done = std::move(done)](std::optional<Role> role) {
@@ -203,7 +204,7 @@ void SessionRoutes::change_password(const Call& call) {
     if (change->role != Role::Operator) {
       return poster.responder->answer(refusal(icd::Status::Conflict, "set the operator's password first"));
     }
-    if (!may_try(poster)) return;
+    if (!check_limit(poster)) return;
     if (!keys_.is_code(change->code)) return poster.responder->answer(wrong("the code"));
     guesses_.on_succeeded(poster.guesser, Role::Operator);
     return set(*change, poster);

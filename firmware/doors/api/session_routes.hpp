@@ -63,7 +63,7 @@ class SessionRoutes {
   template <class Done>
   void check(const std::string& password, const Poster& poster, Done done);
   /// False: answered with 429 or 503.
-  bool may_try(const Poster& poster);
+  bool check_limit(const Poster& poster);
 
   loop::Loop& loop_;
   Authenticator& authenticator_;

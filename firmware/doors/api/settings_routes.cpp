@@ -20,14 +20,14 @@ using codec::Value;
 constexpr std::size_t kShortestTeamToken = 8;
 
 /// Settings to save or check, perhaps invalid, and the version they are based on.
-struct Posted {
+struct PostedSettings {
   Value settings;
   std::string base;
 };
 
-icd::Checked<Posted> read_posted(const std::string& body, bool with_base) {
-  return read_body<Posted>(body, [with_base](const Field& root) {
-    Posted posted;
+icd::Checked<PostedSettings> read_posted(const std::string& body, bool with_base) {
+  return read_body<PostedSettings>(body, [with_base](const Field& root) {
+    PostedSettings posted;
     const Field settings = root.member("settings");
     if (!settings.is<Value::Object>()) settings.refuse_kind("an object");
     if (with_base) posted.base = root.member("base").text();
@@ -74,7 +74,7 @@ intake::Answer apply(Setup& setup, const settings::Settings& next) {
   const auto changes = settings::changes(setup.settings(), next);
   const auto warnings = setup.warnings(next);
   if (const auto saved = setup.save(next); !saved) return refused_change(saved.error());
-  return fresh(ChangesView{changes, warnings});
+  return uncached_answer(ChangesView{changes, warnings});
 }
 
 }  // namespace
@@ -82,7 +82,8 @@ intake::Answer apply(Setup& setup, const settings::Settings& next) {
 namespace settings_routes {
 
 intake::Answer export_settings(const Setup& setup) {
-  return download(fresh("application/json", settings::file_of(setup.settings())), "adit-settings.json");
+  return download(uncached_answer("application/json", settings::file_of(setup.settings())),
+                  "adit-settings.json");
 }
 
 icd::Checked<CheckView> check(const Setup& setup, const std::string& body) {

@@ -36,7 +36,7 @@ class Source {
 /// The covered area of the present map, counted on request.
 class CoveredMap {
  public:
-  using Done = std::function<void(icd::Checked<picture::Covered>)>;
+  using Done = std::function<void(icd::Checked<picture::Coverage>)>;
 
   virtual ~CoveredMap() = default;
   /// Counts the area if the map has changed, then calls `done`, perhaps at once. Error: too many requests are
@@ -45,13 +45,14 @@ class CoveredMap {
 };
 
 /// Map levels finer than the mosaic's, for the present alone.
-class FinerMap {
+class FineMap {
  public:
   using Done = std::function<void(icd::Checked<picture::Tile>)>;
 
-  virtual ~FinerMap() = default;
+  virtual ~FineMap() = default;
   /// The existing tiles of a layer, and those changed after version `since`.
-  virtual std::optional<picture::Finer> finer(const picture::Layer& layer, std::uint64_t since) const = 0;
+  virtual std::optional<picture::FinerLevels> finer_levels(const picture::Layer& layer,
+                                                           std::uint64_t since) const = 0;
   /// Draws the tile if necessary, then calls `done`, perhaps at once. `at` must be in the world. Null: no
   /// finer data there. Error: too many requests are queued.
   virtual void tile(const picture::Layer& layer, const picture::TileIndex& at, Done done) = 0;

@@ -64,14 +64,14 @@ class Spare {
   virtual ~Spare() = default;
   virtual SpareView state() const = 0;
   /// Makes the box a standby until resume(), across power cuts.
-  virtual icd::Checked<void> stand_by() = 0;
+  virtual icd::Checked<void> enter_standby() = 0;
   virtual icd::Checked<void> resume() = 0;
   /// Passes the export's file to `done` later. Only on standby.
   virtual void export_to(Sealed done) = 0;
   /// Requests an export to the stick, then calls `done`. Only on standby.
   virtual void export_to_stick(Done done) = 0;
   /// Requests the import of that export from the stick.
-  virtual icd::Checked<void> take_from_stick(const std::string& name) = 0;
+  virtual icd::Checked<void> import_from_stick(const std::string& name) = 0;
   /// Imports an export in place of an earlier one.
   virtual icd::Checked<void> import_file(std::string file) = 0;
   /// Opens the import with its code. Calls `done` later.

@@ -48,9 +48,9 @@ class Updates {
   /// Restarts the box. Rejected while a report is in flight, unless `anyway`.
   virtual icd::Checked<void> restart(bool anyway) = 0;
   /// If UpdateView::stray is set: restarts into the proven slot.
-  virtual icd::Checked<void> go_back(bool anyway) = 0;
+  virtual icd::Checked<void> restart_proven_slot(bool anyway) = 0;
   /// If UpdateView::stray is set: makes the running slot the proven one.
-  virtual icd::Checked<void> stay() = 0;
+  virtual icd::Checked<void> keep_running_slot() = 0;
 };
 
 }  // namespace adit::api

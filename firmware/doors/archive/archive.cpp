@@ -13,14 +13,14 @@ namespace adit::archive {
 
 StoredRuns::StoredRuns(loop::Writer& writer, RunsFolder folder)
     : writer_(writer), folder_(std::move(folder)) {
-  look();
+  refresh();
 }
 
 StoredRuns::~StoredRuns() {
   *ending_ = true;
 }
 
-void StoredRuns::look() {
+void StoredRuns::refresh() {
   const auto listed = std::make_shared<std::expected<RunsFolder::List, std::string>>();
   writer_.submit([listed, folder = folder_] { *listed = folder.list(); },
                  [this, listed] {
@@ -129,7 +129,7 @@ Archive::Archive(loop::Loop& loop, const std::string& state_folder)
     : loop_(loop), queue_(loop), writer_(loop), stored_(writer_, RunsFolder(state_folder)) {}
 
 /// Result of opening a run on disk.
-struct Archive::Opening {
+struct Archive::OpenedRun {
   Head head;
   std::expected<std::string, std::string> key = std::unexpected("no memory");
   std::shared_ptr<RunFolder> folder;
@@ -144,13 +144,13 @@ struct Archive::Opening {
 
 void Archive::begin(const Head& head, GoOn go_on) {
   ++begins_;
-  begun_ = Begun{.go_on = std::move(go_on)};
+  begun_ = PendingRead{.go_on = std::move(go_on)};
   present_ = {};
   present_.head = head;
   samples_.clear();
   attention_.clear();
   queue_.begin();
-  const auto opening = std::make_shared<Opening>();
+  const auto opening = std::make_shared<OpenedRun>();
   opening->head = head;
   writer_.submit(
       [opening, runs = stored_.folder(), enough = stored_.enough(), most = limits_.all]() mutable {
@@ -165,23 +165,23 @@ void Archive::begin(const Head& head, GoOn go_on) {
       });
 }
 
-void Archive::on_opened(Opening& opening) {
-  Begun begun = *std::exchange(begun_, std::nullopt);
+void Archive::on_opened(OpenedRun& opening) {
+  PendingRead begun = *std::exchange(begun_, std::nullopt);
   if (!opening.told) opening.told.emplace(0);
   on_folder_open(opening);
   RunRecords& told = *opening.told;
   told.move(begun.moved);
   samples_ = std::move(told.samples());
-  attention_.go_on(samples_.history_after(0).attention);
+  attention_.restore(samples_.history_after(0).attention);
   const auto wiped = told.picture().wipe_time();
   const auto tracks = told.tracks();
-  queue_.go_on_from(told, tracks, wiped, begun.go_on(std::move(told.picture()), tracks));
+  queue_.restore(told, tracks, wiped, begun.go_on(std::move(told.picture()), tracks));
   next_write_ = loop_.now();
-  stored_.look();
+  stored_.refresh();
 }
 
 /// A run without a directory is not written.
-void Archive::on_folder_open(const Opening& opening) {
+void Archive::on_folder_open(const OpenedRun& opening) {
   if (opening.key) {
     present_.key = *opening.key;
     present_.folder = opening.folder;
@@ -193,7 +193,7 @@ void Archive::on_folder_open(const Opening& opening) {
 
 void Archive::make_folder() {
   next_write_ = loop_.now() + kWriteEvery;
-  const auto opening = std::make_shared<Opening>();
+  const auto opening = std::make_shared<OpenedRun>();
   opening->head = present_.head;
   ++writing_;
   writer_.submit([opening, runs = stored_.folder()]() mutable { opening->open_folder(runs); },
@@ -217,9 +217,9 @@ constexpr double kNoneRests = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-void Archive::tick(const Seen& seen) {
+void Archive::tick(const RunSnapshot& seen) {
   if (begun_) return;
-  if (samples_.wants(seen.now)) samples_.add(queue_.add(seen.sample()));
+  if (samples_.is_due(seen.now)) samples_.add(queue_.add(seen.sample()));
   note(seen);
   if (writing_ > 0 || loop_.now() < next_write_) return;
   if (present_.folder) {
@@ -230,25 +230,25 @@ void Archive::tick(const Seen& seen) {
   }
 }
 
-void Archive::write_now(const Seen& seen) {
+void Archive::write_now(const RunSnapshot& seen) {
   if (begun_ || !present_.folder) return;
   note(seen);
   queue_.add_poses(seen);
-  queue_.be_due();
+  queue_.make_due();
   write(seen, queue_.allowance().at(loop_.now()), kNoneRests);
 }
 
-void Archive::end_run(const Seen& seen) {
+void Archive::end_run(const RunSnapshot& seen) {
   if (begun_ || !present_.folder) return;
   queue_.add_poses(seen);
-  queue_.be_due();
+  queue_.make_due();
   const Allowance of_the_next = queue_.allowance();
   while (write(seen, static_cast<std::size_t>(Allowance::kMost), kNoneRests)) {
   }
   queue_.allowance() = of_the_next;
 }
 
-void Archive::note(const Seen& seen) {
+void Archive::note(const RunSnapshot& seen) {
   present_.row = seen.facts();
   present_.row.key = present_.key;
   present_.row.last = seen.now;
@@ -256,7 +256,7 @@ void Archive::note(const Seen& seen) {
 }
 
 /// False: no data was due.
-bool Archive::write(const Seen& seen, std::size_t most, double tiles_of) {
+bool Archive::write(const RunSnapshot& seen, std::size_t most, double tiles_of) {
   next_write_ = loop_.now() + kWriteEvery;
   auto write = queue_.next(seen, present_.row, most, tiles_of);
   if (!write) return false;
@@ -281,12 +281,12 @@ void Archive::on_written(const Write& write) {
   if (std::exchange(trouble_, why) != why && !why.empty())
     host::log(host::Level::Warning, "cannot store the run's map and tracks", {{"why", why}});
   queue_.on_written(write, limits_.run);
-  if (write.outcome && !stored_.resize(present_.key, write.outcome->bytes)) stored_.look();
+  if (write.outcome && !stored_.resize(present_.key, write.outcome->bytes)) stored_.refresh();
 }
 
 void Archive::set_attention(const std::vector<std::string>& sentences, api::Time now) {
   if (begun_) return;
-  for (api::AttentionStep& step : attention_.look(sentences, now)) {
+  for (api::AttentionStep& step : attention_.update(sentences, now)) {
     queue_.add(record_of(step), true);
     samples_.add(std::move(step));
   }

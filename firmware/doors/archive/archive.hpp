@@ -31,10 +31,10 @@ class StoredRuns {
   ~StoredRuns();
 
   const RunsFolder& folder() const { return folder_; }
-  /// As of the last look().
+  /// As of the last refresh().
   const RunsFolder::List& list() const { return list_; }
   /// Lists the directory again, on the thread. If that fails, list() keeps its runs and says why.
-  void look();
+  void refresh();
   /// The run's size has changed. False: the run is not in list().
   bool resize(const std::string& key, std::uint64_t bytes);
   /// A function that returns true once this object ends.
@@ -78,12 +78,12 @@ class Archive final : public api::KeptRuns {
   void begin(const Head& head, GoOn go_on);
 
   /// Call once a second. Writes due data.
-  void tick(const Seen& seen);
+  void tick(const RunSnapshot& seen);
   /// Writes queued data at once, within the allowance. The process may end afterwards.
-  void write_now(const Seen& seen);
+  void write_now(const RunSnapshot& seen);
   /// Writes all queued data of this run, beyond the allowance, because it is the last chance. Stores the
   /// facts of the last tick, because a newer status may belong to the next run.
-  void end_run(const Seen& seen);
+  void end_run(const RunSnapshot& seen);
   void set_attention(const std::vector<std::string>& sentences, api::Time now);
   /// Call if the time of day was advanced by `seconds`: shifts all times of this run.
   void move(double seconds);
@@ -105,26 +105,26 @@ class Archive final : public api::KeptRuns {
   void remove(const std::string& key, std::function<void(std::expected<void, std::string>)> done) override;
 
  private:
-  struct Opening;
+  struct OpenedRun;
   /// The data of a run on disk is being read.
-  struct Begun {
+  struct PendingRead {
     GoOn go_on;
     double moved = 0;  // clock steps meanwhile, in seconds
   };
   /// The run that is recorded.
-  struct Present {
+  struct PresentRun {
     Head head;
     std::string key;                    // "": not known yet
     std::shared_ptr<RunFolder> folder;  // null: it has no directory
     api::RunRow row;                    // at the last tick, without its bytes
   };
 
-  void on_opened(Opening& opening);
-  void on_folder_open(const Opening& opening);
+  void on_opened(OpenedRun& opening);
+  void on_folder_open(const OpenedRun& opening);
   /// Retries if the run has no directory.
   void make_folder();
-  void note(const Seen& seen);
-  bool write(const Seen& seen, std::size_t most, double tiles_of);
+  void note(const RunSnapshot& seen);
+  bool write(const RunSnapshot& seen, std::size_t most, double tiles_of);
   void on_written(const Write& write);
 
   loop::Loop& loop_;
@@ -132,8 +132,8 @@ class Archive final : public api::KeptRuns {
   WriteQueue queue_;
   Samples samples_;
   Attention attention_;
-  Present present_;
-  std::optional<Begun> begun_;
+  PresentRun present_;
+  std::optional<PendingRead> begun_;
   std::uint64_t begins_ = 0;  // number of begin() calls
   loop::Instant next_write_{};
   int writing_ = 0;  // writes in flight

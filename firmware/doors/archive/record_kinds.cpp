@@ -109,7 +109,7 @@ inline constexpr auto store::kMembers<archive::TileState> =
     std::tuple(&archive::TileState::layer, &archive::TileState::at, &archive::TileState::stamp,
                &archive::TileState::tile);
 template <>
-inline constexpr auto store::kMembers<archive::Wiped> = std::tuple(&archive::Wiped::stamp);
+inline constexpr auto store::kMembers<archive::WipeRecord> = std::tuple(&archive::WipeRecord::stamp);
 template <>
 inline constexpr auto store::kMembers<archive::Sample> =
     std::tuple(&archive::Sample::at, &archive::Sample::sent_mbit, &archive::Sample::queued_bytes,
@@ -153,7 +153,7 @@ inline constexpr auto store::kMembers<api::AttentionStep> =
 namespace archive {
 namespace {
 
-class Put : public store::Writer {
+class RecordWriter : public store::Writer {
  public:
   using store::Writer::operator();
   /// Truncates a text between two UTF-8 characters.
@@ -179,7 +179,7 @@ class RecordReader : public store::Reader {
     check(text.size() <= kMostText && codec::is_utf8(text));
   }
   void operator()(picture::Tile& tile) {
-    const auto packed = std::make_shared<picture::Packed>();
+    const auto packed = std::make_shared<picture::PackedTile>();
     packed->crc = read<std::uint32_t>();
     const auto bytes = read<std::string_view>();
     packed->deflated.assign(bytes.begin(), bytes.end());
@@ -216,7 +216,7 @@ bool is_good(const picture::LayerView& view) {
   return is_good(view.layer) && is_time(view.first) && is_time(view.last) &&
          is_between(area.left, area.right, kMost) && is_between(area.bottom, area.top, kMost);
 }
-bool is_good(const Wiped& wiped) {
+bool is_good(const WipeRecord& wiped) {
   return is_time(wiped.stamp);
 }
 bool is_good(const api::Track& track) {
@@ -249,7 +249,8 @@ std::optional<Record> read_any(std::size_t kind, std::string_view values, const 
 
 std::string record_of(const Record& record) {
   const std::string kind(1, static_cast<char>(record.index()));
-  return frame_record(kind + std::visit([](const auto& one) { return store::bytes_of<Put>(one); }, record));
+  return frame_record(kind +
+                      std::visit([](const auto& one) { return store::bytes_of<RecordWriter>(one); }, record));
 }
 
 std::optional<Record> read(std::string_view body) {

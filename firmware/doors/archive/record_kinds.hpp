@@ -45,7 +45,7 @@ class Lines {
   std::string pop(loop::Instant now);
   /// After a failed write of pop(): they are due at once.
   void give_back(std::string records);
-  void be_due() { is_due_ = true; }
+  void make_due() { is_due_ = true; }
   bool is_due(loop::Instant now) const { return bytes_ > 0 && (is_due_ || now >= rests_until_); }
   void trim_to(std::size_t most);
   std::size_t bytes() const { return bytes_; }
@@ -86,7 +86,7 @@ struct TileState {
 };
 
 /// Records that the map was wiped at that time.
-struct Wiped {
+struct WipeRecord {
   double stamp = 0;
 };
 
@@ -111,8 +111,8 @@ struct Step {
 
 /// The kinds of records. Their positions are numbers in files: keep them and append new kinds. LayerView: a
 /// layer without its tiles. Track: poses of one robot. AttentionStep: start or end of a need for attention.
-using Record =
-    std::variant<Head, TileState, picture::LayerView, Wiped, api::Track, Sample, api::AttentionStep, Step>;
+using Record = std::variant<Head, TileState, picture::LayerView, WipeRecord, api::Track, Sample,
+                            api::AttentionStep, Step>;
 
 /// The framed record.
 std::string record_of(const Record& record);

@@ -37,10 +37,10 @@ std::size_t largest_file(std::uint64_t most) {
 
 GrowingFile::GrowingFile(std::string folder, std::string prefix, std::string head)
     : folder_(std::move(folder)), prefix_(std::move(prefix)), head_(std::move(head)) {
-  static_cast<void>(look());  // append() looks again and returns the error
+  static_cast<void>(scan());  // append() looks again and returns the error
 }
 
-std::expected<void, std::string> GrowingFile::look() {
+std::expected<void, std::string> GrowingFile::scan() {
   if (has_looked_) return {};
   auto numbers = ADIT_TRY(host::numbers_in(folder_, prefix_));
   has_looked_ = true;
@@ -63,14 +63,14 @@ std::uint64_t GrowingFile::bytes() const {
 }
 
 std::expected<std::uint64_t, std::string> GrowingFile::append(std::string_view bytes, std::size_t largest) {
-  ADIT_TRY(look());
+  ADIT_TRY(scan());
   const bool fits = !files_.empty() && files_.back().size + bytes.size() <= largest;
   if (fits && !fd_) fd_ = loop::open_regular(path(files_.back().number), O_WRONLY | O_APPEND);
   if (!fits || !fd_) {
     constexpr int kFlags = O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC;
     const std::uint64_t number = files_.empty() ? 1 : files_.back().number + 1;
     loop::FileDescriptor next(::open(path(number).c_str(), kFlags, host::kOursAlone));
-    if (!next) return std::unexpected(host::trouble(path(number), errno));
+    if (!next) return std::unexpected(host::path_error(path(number), errno));
     fd_ = std::move(next);
     files_.push_back({number, 0});
   }
@@ -85,7 +85,7 @@ std::expected<std::uint64_t, std::string> GrowingFile::append(std::string_view b
   }
   const int error = errno;
   if (::ftruncate(fd_.get(), static_cast<off_t>(last.size)) != 0) fd_ = {};
-  return std::unexpected(host::trouble(path(last.number), error));
+  return std::unexpected(host::path_error(path(last.number), error));
 }
 
 std::expected<void, std::string> GrowingFile::remove_first() {
@@ -106,7 +106,7 @@ RunFolder::RunFolder(std::string path, const Head& head)
       tiles_(path_, kTiles, record_of(head)),
       lines_(path_, kLines, record_of(head)) {}
 
-std::expected<RunFolder::Written, std::string> RunFolder::write(const Batch& batch, std::uint64_t most) {
+std::expected<RunFolder::WriteResult, std::string> RunFolder::write(const Batch& batch, std::uint64_t most) {
   if (const auto disk = host::disk_of(path_)) {  // otherwise the write fails with the reason
     if (disk->free < std::min(kLeave, disk->all / 4)) return std::unexpected("the disk is nearly full");
     most = std::min(most, (disk->free + bytes()) / 2);
@@ -114,7 +114,7 @@ std::expected<RunFolder::Written, std::string> RunFolder::write(const Batch& bat
   ADIT_TRY(tiles_.shrink(most));
   ADIT_TRY(lines_.shrink(most / 8));
   const std::size_t largest = largest_file(most);
-  Written written;
+  WriteResult written;
   if (!batch.tiles.empty() || !batch.beside.empty()) {
     std::string records = batch.beside;
     for (const TileState& state : batch.tiles) records += record_of(state);
@@ -144,7 +144,7 @@ std::expected<void, std::string> read_run(const std::string& folder, RunRecords&
     for (const std::uint64_t number : numbers) {
       if (enough()) return all_read;
       if (const auto bytes = host::read_file(folder + '/' + host::numbered_name(prefix, number))) {
-        told.tell(*bytes, prefix == kTiles ? number : 0);
+        told.add_file(*bytes, prefix == kTiles ? number : 0);
       } else if (all_read) {
         all_read = std::unexpected(bytes.error());
       }
@@ -154,7 +154,7 @@ std::expected<void, std::string> read_run(const std::string& folder, RunRecords&
 }
 
 std::expected<bool, std::string> is_blank(const std::string& folder) {
-  bool is_blank = !host::may_exist(folder + '/' + RunFolder::kFacts);
+  bool is_blank = !host::can_exist(folder + '/' + RunFolder::kFacts);
   for (const char* prefix : {kLines, kTiles}) {
     const auto numbers = ADIT_TRY(host::numbers_in(folder, prefix));
     is_blank = is_blank && numbers.empty();
@@ -176,7 +176,7 @@ std::expected<std::uint64_t, std::string> bytes_in(const std::string& folder) {
     if (error == std::errc::no_such_file_or_directory || error == std::errc::is_a_directory) error.clear();
     return !error;
   });
-  if (!listed) return std::unexpected(host::trouble(folder, listed.error()));
+  if (!listed) return std::unexpected(host::path_error(folder, listed.error()));
   if (error) return std::unexpected(folder + ": " + error.message());
   return bytes;
 }
@@ -213,7 +213,7 @@ std::expected<std::optional<api::RunRow>, std::string> RunsFolder::facts_of(cons
   const std::string folder = folder_of(key), file = folder + '/' + RunFolder::kFacts;
   std::optional<api::RunRow> row;
   std::expected<void, std::string> all_read;
-  if (host::may_exist(file)) {
+  if (host::can_exist(file)) {
     const auto text = host::read_file(file);
     if (!text) {
       all_read = std::unexpected(text.error());

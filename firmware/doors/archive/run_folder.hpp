@@ -48,7 +48,7 @@ class GrowingFile {
     std::uint64_t number, size;
   };
   /// Reads the existing files, once successfully, so that a number is not used twice.
-  std::expected<void, std::string> look();
+  std::expected<void, std::string> scan();
   std::string path(std::uint64_t number) const;
 
   std::string folder_, prefix_, head_;
@@ -66,7 +66,7 @@ class RunFolder {
 
   RunFolder(std::string path, const Head& head);
 
-  struct Written {
+  struct WriteResult {
     std::uint64_t file = 0;        // number of the tile file
     std::uint64_t first_file = 0;  // first tile file, or 0 if there are fewer than two
     std::uint64_t bytes = 0;       // of the run
@@ -74,7 +74,7 @@ class RunFolder {
   /// `most`: limit of the run in bytes; half of the available space also limits it. Removes first files
   /// beyond the limit. After an error no lines were written; other data may have been, and may be written
   /// again.
-  std::expected<Written, std::string> write(const Batch& batch, std::uint64_t most);
+  std::expected<WriteResult, std::string> write(const Batch& batch, std::uint64_t most);
   /// Removes that tile file if it is the first of several.
   void remove_first(std::uint64_t file);
   std::uint64_t bytes() const { return tiles_.bytes() + lines_.bytes(); }

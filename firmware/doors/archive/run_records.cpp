@@ -12,7 +12,7 @@ double DueTiles::interval_of(int level) {
   return kFinest * std::pow(4, level);
 }
 
-void DueTiles::look(const picture::Mosaic& picture) {
+void DueTiles::mark_changed(const picture::Mosaic& picture) {
   if (picture.version() == seen_) return;
   for (const picture::LayerView& layer : picture.layers(seen_)) {
     for (const picture::TileView& tile : layer.tiles) {
@@ -37,7 +37,7 @@ std::vector<TileKey> DueTiles::at(double now) const {
   return keys;
 }
 
-void DueTiles::being_written(const TileKey& tile, std::uint64_t write, double now) {
+void DueTiles::record_write(const TileKey& tile, std::uint64_t write, double now) {
   Tile& its = tiles_[tile];
   its.written = now;
   its.write = write;
@@ -53,7 +53,7 @@ void DueTiles::on_written(std::uint64_t write, std::optional<std::uint64_t> file
   }
 }
 
-bool DueTiles::leave(std::uint64_t file) {
+bool DueTiles::release_file(std::uint64_t file) {
   bool holds_any = false;
   for (auto& [at, tile] : tiles_) {
     if (tile.file != file) continue;
@@ -66,7 +66,7 @@ bool DueTiles::leave(std::uint64_t file) {
 void DueTiles::begin(const picture::Mosaic& picture, const std::map<TileKey, std::uint64_t>& files) {
   tiles_.clear();
   seen_ = 0;
-  look(picture);
+  mark_changed(picture);
   for (const auto& [tile, file] : files) tiles_[tile] = {.written = 1, .file = file};
 }
 
@@ -136,14 +136,14 @@ api::History Samples::history_after(api::Time since) const {
   return all;
 }
 
-void Attention::go_on(const std::vector<api::AttentionStep>& steps) {
+void Attention::restore(const std::vector<api::AttentionStep>& steps) {
   for (const api::AttentionStep& step : steps) {
     std::erase(shown_, step.sentence);
     if (step.came && shown_.size() < kMost) shown_.push_back(step.sentence);
   }
 }
 
-std::vector<api::AttentionStep> Attention::look(const std::vector<std::string>& sentences, api::Time now) {
+std::vector<api::AttentionStep> Attention::update(const std::vector<std::string>& sentences, api::Time now) {
   std::vector<api::AttentionStep> steps;
   std::vector<std::string> shown(
       sentences.begin(), sentences.begin() + static_cast<std::ptrdiff_t>(std::min(sentences.size(), kMost)));
@@ -157,7 +157,7 @@ std::vector<api::AttentionStep> Attention::look(const std::vector<std::string>& 
   return steps;
 }
 
-void RunRecords::tell(std::string_view bytes, std::uint64_t file) {
+void RunRecords::add_file(std::string_view bytes, std::uint64_t file) {
   damaged_ += for_each_record(bytes, [&](std::string_view record) {
     const auto known = read(record);
     if (known && (is_ours_ || std::holds_alternative<Head>(*known)))
@@ -211,7 +211,7 @@ void RunRecords::add(const Head& head, std::uint64_t /*file*/) {
 
 void RunRecords::add(const TileState& state, std::uint64_t file) {
   const bool is_readable = !state.tile || packer_.is_whole(*state.tile);
-  if (!tiles_fit_ || !is_readable || !picture_.take_up(state.layer, state.at, state.tile, state.stamp))
+  if (!tiles_fit_ || !is_readable || !picture_.restore(state.layer, state.at, state.tile, state.stamp))
     return;
   last_tile_ = std::max(last_tile_, state.stamp);
   files_[{state.layer, state.at}] = file;

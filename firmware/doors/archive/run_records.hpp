@@ -32,15 +32,15 @@ class DueTiles {
   static double interval_of(int level);
 
   /// Marks tiles that changed since the last look.
-  void look(const picture::Mosaic& picture);
+  void mark_changed(const picture::Mosaic& picture);
   /// Tiles to write at `now` (seconds that never step), in order.
   std::vector<TileKey> at(double now) const;
   /// Records that write number `write` takes the tile's state at `now`.
-  void being_written(const TileKey& tile, std::uint64_t write, double now);
+  void record_write(const TileKey& tile, std::uint64_t write, double now);
   /// Records the write's file. std::nullopt: the write failed, and its tiles are due again.
   void on_written(std::uint64_t write, std::optional<std::uint64_t> file);
   /// Makes the tiles of that file due, so that the file can be removed. True: it has no newest states.
-  bool leave(std::uint64_t file);
+  bool release_file(std::uint64_t file);
   /// Starts with the tiles of `picture` that are stored in `files`.
   void begin(const picture::Mosaic& picture, const std::map<TileKey, std::uint64_t>& files);
 
@@ -65,7 +65,7 @@ class Samples {
   static constexpr std::size_t kMostSteps = 2000;
 
   /// Whether a sample is due at that time.
-  bool wants(api::Time at) const { return samples_.empty() || at >= samples_.back().at + spacing_ - kEarly; }
+  bool is_due(api::Time at) const { return samples_.empty() || at >= samples_.back().at + spacing_ - kEarly; }
   /// Ignores a sample that is not later than the last one.
   void add(Sample sample);
   /// Beyond kMostSteps the oldest is dropped.
@@ -90,9 +90,9 @@ class Attention {
   static constexpr std::size_t kMost = 100;  // at the same time
 
   /// Returns the changes since the last look.
-  std::vector<api::AttentionStep> look(const std::vector<std::string>& sentences, api::Time now);
+  std::vector<api::AttentionStep> update(const std::vector<std::string>& sentences, api::Time now);
   /// `steps`: from before a restart. Needs that had not ended continue.
-  void go_on(const std::vector<api::AttentionStep>& steps);
+  void restore(const std::vector<api::AttentionStep>& steps);
   void clear() { *this = Attention(); }
 
  private:
@@ -108,7 +108,7 @@ class RunRecords {
   explicit RunRecords(std::size_t budget) : picture_(budget) {}
 
   /// Adds one file. `file`: number of a tile file, or 0 for a line file.
-  void tell(std::string_view bytes, std::uint64_t file);
+  void add_file(std::string_view bytes, std::uint64_t file);
   /// Call if the time of day was advanced by `seconds`.
   void move(double seconds);
 
@@ -126,9 +126,9 @@ class RunRecords {
   void add(const Head& head, std::uint64_t file);
   void add(const TileState& state, std::uint64_t file);
   void add(const picture::LayerView& view, std::uint64_t /*file*/) {
-    if (tiles_fit_) picture_.take_up(view);
+    if (tiles_fit_) picture_.restore(view);
   }
-  void add(const Wiped& wiped, std::uint64_t /*file*/) { picture_.set_wipe_time(wiped.stamp); }
+  void add(const WipeRecord& wiped, std::uint64_t /*file*/) { picture_.set_wipe_time(wiped.stamp); }
   void add(const api::Track& track, std::uint64_t file);
   template <class Line>
   void add(const Line& line, std::uint64_t file);

@@ -92,7 +92,7 @@ api::Time begin_of(const api::KeptRun& kept, const Curve& curve) {
 }
 
 std::string facts_of(const api::KeptRun& kept, const std::vector<api::ReportDetail>& reports,
-                     const picture::Covered& covered, api::Time began) {
+                     const picture::Coverage& covered, api::Time began) {
   const api::RunRow& run = kept.facts;
   return "<dl>\n" + fact("Score", number(run.score)) + fact("Reports left", number(run.remaining_reports)) +
          fact("Reports", counts_of(reports)) +
@@ -104,7 +104,7 @@ std::string facts_of(const api::KeptRun& kept, const std::vector<api::ReportDeta
 }
 
 /// Times of the day `day` without it.
-std::string life_of(const api::ReportDetail& report, const std::string& day) {
+std::string steps_text(const api::ReportDetail& report, const std::string& day) {
   std::string steps;
   for (const api::ReportStep& step : report.history) {
     std::string time = icd::utc(step.at);
@@ -125,7 +125,7 @@ std::string reports_table(const std::vector<api::ReportDetail>& reports, api::Ti
     rows += "<tr>" + cell(std::to_string(row.number), true) + cell(row.type) + cell(row.robot) +
             cell(place(row.position)) +
             cell(row.asking ? row.state + ", Adit asks for the status" : row.state) +
-            cell(signed_change(row.score_change), true) + life_of(report, day) + "</tr>\n";
+            cell(signed_change(row.score_change), true) + steps_text(report, day) + "</tr>\n";
   }
   return "<table class=\"reports\"><thead><tr><th class=\"n\">No.</th><th>Type</th><th>Robot</th><th>Place "
          "(m)</th><th>State</th><th class=\"n\">Score</th><th>History (UTC)</th></tr></thead><tbody>\n" +
@@ -150,7 +150,7 @@ std::string oldest_map(const api::KeptRun& run, const std::string& robot) {
   return oldest ? to_fixed(*oldest, 0) + " s" : "never there";
 }
 
-std::string robots_table(const api::KeptRun& run, const picture::Covered& covered) {
+std::string robots_table(const api::KeptRun& run, const picture::Coverage& covered) {
   std::map<std::string, double, icd::NaturalOrder> metres;
   for (const std::string& robot : run.facts.robots) metres[robot] = 0;
   for (const api::Track& track : run.tracks) metres[track.robot] = length_of(track);
@@ -223,7 +223,7 @@ std::string run_report(const api::KeptRun& run, const std::vector<api::ReportDet
   const std::string title = icd::escape_html(title_of(run.facts));
   picture::CoveredArea area;
   area.update(area.changes(run.picture));
-  const picture::Covered covered = area.now();
+  const picture::Coverage covered = area.now();
   const Curve curve = picture::covered_over_time(run.picture);
   const api::Time began = begin_of(run, curve);
   return icd::sentence("<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>", title,
@@ -290,7 +290,7 @@ Sheet sheet_of(const picture::Area& shown) {
   return sheet;
 }
 
-std::string image(const picture::Packed& tile, picture::LayerKind kind, const picture::TileIndex& at,
+std::string image(const picture::PackedTile& tile, picture::LayerKind kind, const picture::TileIndex& at,
                   const Sheet& sheet) {
   const picture::Area area = picture::area_of(at);
   const std::string png = kind == picture::LayerKind::Grid
@@ -373,21 +373,21 @@ std::string axes(const Sheet& sheet) {
 }
 
 /// Indices of kColours and kDashes.
-struct Look {
+struct LineStyle {
   std::size_t colour = 0, dashes = 0;
 };
 
-const char* colour_of(const Look& look) {
+const char* colour_of(const LineStyle& look) {
   return kColours[look.colour % std::size(kColours)];
 }
 
 /// A robot's line: along a track, and in the legend.
-std::string stroke_of(const Look& look) {
+std::string stroke_of(const LineStyle& look) {
   return icd::sentence("class=\"track\" stroke=\"", colour_of(look), "\" stroke-dasharray=\"",
                        kDashes[look.dashes % std::size(kDashes)], "\"");
 }
 
-std::string polyline(const api::Track& track, const Look& look, const Sheet& sheet) {
+std::string polyline(const api::Track& track, const LineStyle& look, const Sheet& sheet) {
   std::string points;
   for (const api::TrackPose& pose : track.poses)
     points += to_fixed(sheet.x(pose.position.x), 2) + ',' + to_fixed(sheet.y(pose.position.y), 2) + ' ';
@@ -404,8 +404,9 @@ std::vector<api::Track> sort_by_first_pose(std::vector<api::Track> tracks) {
 
 /// As the page's robotLooks(): robots of one chosen colour have different dashes. Other robots have the
 /// colours that no robot chose, in the order of `tracks`.
-std::vector<Look> looks_of(const std::vector<api::Track>& tracks, const std::vector<api::ColourRow>& chosen) {
-  std::vector<Look> looks;
+std::vector<LineStyle> line_styles(const std::vector<api::Track>& tracks,
+                                   const std::vector<api::ColourRow>& chosen) {
+  std::vector<LineStyle> looks;
   std::map<std::size_t, std::size_t> robots;  // by chosen colour
   std::size_t next = 0;
   for (const api::Track& track : tracks) {
@@ -506,7 +507,7 @@ std::string colour_swatch(const picture::Colour& colour, const std::string& mean
                 meaning);
 }
 
-std::string legend(const std::vector<api::Track>& tracks, const std::vector<Look>& looks,
+std::string legend(const std::vector<api::Track>& tracks, const std::vector<LineStyle>& looks,
                    const std::vector<picture::LayerView>& layers, const std::vector<Sign>& signs) {
   std::string all;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
@@ -551,7 +552,7 @@ std::string drawn_map(const api::KeptRun& run, const std::vector<api::ReportDeta
   if (!area) return "<p>No map, track or place of a report is stored.</p>\n";
   const Sheet sheet = sheet_of(*area);
   const auto tracks = sort_by_first_pose(run.tracks);
-  const auto looks = looks_of(tracks, run.colours);
+  const auto looks = line_styles(tracks, run.colours);
   const auto signs = signs_of(reports, sheet);
   std::size_t left_out = 0;
   std::string drawn_there = tiles_of(run.picture, layers, sheet, left_out), lines, robots, names, marks;

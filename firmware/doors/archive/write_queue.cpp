@@ -39,21 +39,21 @@ bool Poses::has_moved(const api::Track& track) {
 void WriteQueue::begin() {
   lines_ = {};
   steps_.clear();
-  be_due();
+  make_due();
 }
 
-void WriteQueue::go_on_from(RunRecords& stored, const std::vector<api::Track>& tracks,
-                            const std::optional<double>& wiped, const picture::Mosaic& map) {
+void WriteQueue::restore(RunRecords& stored, const std::vector<api::Track>& tracks,
+                         const std::optional<double>& wiped, const picture::Mosaic& map) {
   wiped_ = wiped;
   poses_ = Poses(tracks);
   due_.begin(map, stored.files());
   layers_seen_ = map.version();
 }
 
-void WriteQueue::be_due() {
+void WriteQueue::make_due() {
   next_facts_ = loop_.now();
   facts_.clear();
-  lines_.be_due();
+  lines_.make_due();
 }
 
 /// Keeps only as many lines as one write holds, so that the step goes with them.
@@ -77,7 +77,7 @@ Sample WriteQueue::add(Sample sample) {
 
 /// Lines go with any write, and have room before tiles, because they are small and not replaced by newer
 /// ones.
-std::shared_ptr<Write> WriteQueue::next(const Seen& seen, const api::RunRow& row, std::size_t most,
+std::shared_ptr<Write> WriteQueue::next(const RunSnapshot& seen, const api::RunRow& row, std::size_t most,
                                         double tiles_of) {
   auto write = std::make_shared<Write>();
   Batch& batch = write->batch;
@@ -112,7 +112,7 @@ void WriteQueue::put_facts(const api::RunRow& row, Batch& batch) {
 void WriteQueue::put_layers(const picture::Mosaic& picture, Batch& batch) {
   if (picture.wipe_time() && picture.wipe_time() != wiped_) {
     wiped_ = picture.wipe_time();
-    batch.beside += record_of(Wiped{*wiped_});
+    batch.beside += record_of(WipeRecord{*wiped_});
   }
   if (picture.version() == layers_seen_) return;
   for (picture::LayerView& view : picture.layers(layers_seen_)) {
@@ -122,9 +122,9 @@ void WriteQueue::put_layers(const picture::Mosaic& picture, Batch& batch) {
   allowance_.spend(batch.beside.size());
 }
 
-void WriteQueue::put_tiles(const Seen& seen, Batch& batch, std::size_t left, double tiles_of) {
+void WriteQueue::put_tiles(const RunSnapshot& seen, Batch& batch, std::size_t left, double tiles_of) {
   constexpr std::size_t kFraming = 200;  // most bytes of a record beside the tile, with a robot's name
-  due_.look(seen.picture);
+  due_.mark_changed(seen.picture);
   for (const TileKey& key : due_.at(tiles_of)) {
     TileState state{.layer = key.first, .at = key.second, .stamp = 0, .tile = {}};
     const auto shown = seen.picture.tile(state.layer, state.at, std::nullopt);
@@ -132,7 +132,7 @@ void WriteQueue::put_tiles(const Seen& seen, Batch& batch, std::size_t left, dou
     state.stamp = shown.stamp;
     const std::size_t bytes = kFraming + (state.tile ? state.tile->deflated.size() : 0);
     if (bytes > left) return;
-    due_.being_written(key, writes_, seen.stamp);
+    due_.record_write(key, writes_, seen.stamp);
     left -= bytes;
     allowance_.spend(bytes);
     batch.tiles.push_back(std::move(state));
@@ -143,7 +143,7 @@ void WriteQueue::on_written(const Write& write, std::uint64_t limit) {
   const auto& outcome = write.outcome;
   due_.on_written(write.number, outcome ? std::optional(outcome->file) : std::nullopt);
   if (!outcome) {
-    be_due();
+    make_due();
     steps_.insert(0, write.steps);
     layers_seen_ = 0;  // so that the next write has all layers
     wiped_.reset();
@@ -152,7 +152,7 @@ void WriteQueue::on_written(const Write& write, std::uint64_t limit) {
   }
   // Shortly before the limit, the newest tiles of the first file are written again. Then the file is removed.
   if (outcome->bytes > limit / 8 * 7 && outcome->first_file != 0) leaves_ = outcome->first_file;
-  if (leaves_) is_left_ = due_.leave(*leaves_);
+  if (leaves_) is_left_ = due_.release_file(*leaves_);
 }
 
 }  // namespace adit::archive

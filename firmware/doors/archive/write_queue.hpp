@@ -67,7 +67,7 @@ class Poses {
 };
 
 /// State of the present run.
-struct Seen {
+struct RunSnapshot {
   api::Time now = 0;
   double stamp = 0;  // `now` by the stamp clock
   const picture::Mosaic& picture;
@@ -82,7 +82,7 @@ struct Write {
   Batch batch;
   std::string steps;                  // of the clock, in the batch
   std::optional<std::uint64_t> goes;  // file to remove
-  std::expected<RunFolder::Written, std::string> outcome = std::unexpected("no memory");
+  std::expected<RunFolder::WriteResult, std::string> outcome = std::unexpected("no memory");
 };
 
 /// The data of the present run that is not on disk. Decides which of it goes with the next write.
@@ -95,10 +95,10 @@ class WriteQueue {
   /// A run begins.
   void begin();
   /// Its stored data was read. `map`: the one in use from now on.
-  void go_on_from(RunRecords& stored, const std::vector<api::Track>& tracks,
-                  const std::optional<double>& wiped, const picture::Mosaic& map);
+  void restore(RunRecords& stored, const std::vector<api::Track>& tracks, const std::optional<double>& wiped,
+               const picture::Mosaic& map);
   /// The next write has all lines and the facts.
-  void be_due();
+  void make_due();
   /// Call if the time of day was advanced by `seconds`, before other functions use the new time.
   void move(double seconds);
 
@@ -106,19 +106,20 @@ class WriteQueue {
   /// Queues a sample, and returns it with the 429s since the one before.
   Sample add(Sample sample);
   /// Queues the robots' poses since the last call. Call once for each `now`.
-  void add_poses(const Seen& seen) { poses_.add_to(lines_, seen.tracks(poses_.last()), seen.now); }
+  void add_poses(const RunSnapshot& seen) { poses_.add_to(lines_, seen.tracks(poses_.last()), seen.now); }
 
   Allowance& allowance() { return allowance_; }
   /// The next write, or null if no data is due. `row`: the run's facts. `most`: bytes. `tiles_of`: the tiles
   /// that are due at that stamp.
-  std::shared_ptr<Write> next(const Seen& seen, const api::RunRow& row, std::size_t most, double tiles_of);
+  std::shared_ptr<Write> next(const RunSnapshot& seen, const api::RunRow& row, std::size_t most,
+                              double tiles_of);
   /// Call after the write. `limit`: of the run, in bytes.
   void on_written(const Write& write, std::uint64_t limit);
 
  private:
   void put_facts(const api::RunRow& row, Batch& batch);
   void put_layers(const picture::Mosaic& picture, Batch& batch);
-  void put_tiles(const Seen& seen, Batch& batch, std::size_t left, double tiles_of);
+  void put_tiles(const RunSnapshot& seen, Batch& batch, std::size_t left, double tiles_of);
 
   const loop::Loop& loop_;
   Allowance allowance_;

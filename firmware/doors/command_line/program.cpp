@@ -54,7 +54,7 @@ std::string help(const Program& program) {
   std::size_t column = 0;
   for (const Row& row : program.rows) {
     column = std::max(column, head_of(row).size() + 4);
-    if (row.wanted == Wanted::Always) text.append(" ").append(head_of(row));
+    if (row.wanted == Presence::Required) text.append(" ").append(head_of(row));
   }
   if (!program.usage.empty()) text.append(" ").append(program.usage);
   text.append(" [OPTION]...\n\n").append(paragraphs(program.about)).append("\n");

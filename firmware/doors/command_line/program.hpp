@@ -28,8 +28,8 @@ ValueSetter set_by(Into& into) {
 }
 
 /// Whether an option may be omitted, and whether its value may be "".
-enum class Wanted : std::uint8_t { Maybe, Always };
-enum class Empty : std::uint8_t { Refused, Taken };
+enum class Presence : std::uint8_t { Optional, Required };
+enum class EmptyValue : std::uint8_t { Rejected, Accepted };
 
 /// One option. Reading, help, documents and completion are made from it.
 struct Row {
@@ -37,7 +37,7 @@ struct Row {
   const char* value;  // its name in the help, "FILE", "N|all"; "": it has no value
   const char* help;   // its purpose; a default text in `into` is appended
   std::variant<bool*, std::string*, std::vector<std::string>*, ValueSetter> into;
-  Wanted wanted = Wanted::Maybe;
+  Presence wanted = Presence::Optional;
 };
 
 /// A program's command line. If an option is repeated, the last value counts, but a list gets all values.
@@ -47,7 +47,7 @@ struct Program {
   std::string about;  // its purpose, one paragraph per line; a line that begins with a blank is not wrapped
   std::vector<Row> rows;
   std::string ending = "";  // further information, formatted like `about`
-  Empty empty = Empty::Refused;
+  EmptyValue empty = EmptyValue::Rejected;
   std::vector<std::string>* given = nullptr;  // gets the words of the options that were given; may be null
   ValueSetter word = {};  // stores each word that matches no row; null: such words are errors
 };

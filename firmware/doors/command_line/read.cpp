@@ -50,9 +50,9 @@ bool is_negative_number(std::string_view word) {
   return !word.empty() && std::string_view("0123456789.").contains(word.front());
 }
 
-class Reading {
+class CommandLineParser {
  public:
-  explicit Reading(const Program& program) : program_(program), given_(program.rows.size()) {}
+  explicit CommandLineParser(const Program& program) : program_(program), given_(program.rows.size()) {}
 
   Wrong words(std::span<const char* const> arguments) {
     // getopt_long needs the program's name first and null last. It changes no word and, because of "-", not
@@ -109,7 +109,7 @@ class Reading {
   Wrong put(const Row& row, const std::string& value) {
     const std::string name = row.word;
     if (program_.given != nullptr) program_.given->push_back(name);
-    if (*row.value != '\0' && value.empty() && program_.empty == Empty::Refused)
+    if (*row.value != '\0' && value.empty() && program_.empty == EmptyValue::Rejected)
       return name + " wants a value";
     given_[static_cast<std::size_t>(&row - program_.rows.data())] = *row.value == '\0' || !value.empty();
     asked_ = asked_ || name == "--help" || name == "--version";
@@ -125,7 +125,7 @@ class Reading {
   Wrong missing() const {
     for (std::size_t i = 0; i < given_.size() && !asked_; ++i) {
       const Row& row = program_.rows[i];
-      if (row.wanted == Wanted::Always && !given_[i])
+      if (row.wanted == Presence::Required && !given_[i])
         return std::string(row.word) + " " + row.value + " is missing";
     }
     return std::nullopt;
@@ -139,7 +139,7 @@ class Reading {
 }  // namespace
 
 Wrong read(const Program& program, std::span<const char* const> arguments) {
-  return Reading(program).words(arguments);
+  return CommandLineParser(program).words(arguments);
 }
 
 }  // namespace adit::command_line

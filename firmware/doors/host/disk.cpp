@@ -20,7 +20,7 @@ namespace {
 std::expected<unsigned, std::string> highest_in(const std::string& path, int count, unsigned most) {
   const auto file = slurp(path);
   if (!file && file.error() == ENOENT) return 0;
-  if (!file) return std::unexpected(trouble(path, file.error()));
+  if (!file) return std::unexpected(path_error(path, file.error()));
   std::istringstream numbers(file->text);
   unsigned highest = 0;
   for (unsigned number = 0; count > 0; --count) {
@@ -39,11 +39,11 @@ std::optional<Disk> disk_of(const std::string& folder) {
   return Disk{std::uint64_t{disk.f_blocks} * disk.f_frsize, std::uint64_t{disk.f_bavail} * disk.f_frsize};
 }
 
-std::expected<Wear, std::string> wear_of(const std::string& folder, const std::string& block) {
+std::expected<Wear, std::string> read_wear(const std::string& folder, const std::string& block) {
   struct stat status{};
-  if (stat(folder.c_str(), &status) != 0) return std::unexpected(trouble(folder, errno));
+  if (stat(folder.c_str(), &status) != 0) return std::unexpected(path_error(folder, errno));
   std::string disk = icd::sentence(block, "/", major(status.st_dev), ":", minor(status.st_dev));
-  if (may_exist(disk + "/partition")) disk += "/..";
+  if (can_exist(disk + "/partition")) disk += "/..";
   const auto life = ADIT_TRY(highest_in(disk + "/device/life_time", 2, 0x0b));
   const auto spares = ADIT_TRY(highest_in(disk + "/device/pre_eol_info", 1, 0x03));
   return Wear{life, spares};

@@ -23,6 +23,6 @@ struct Wear {
 /// The wear of a directory's disk, as the kernel read it at the boot. `block`: the kernel's directory of
 /// block devices by number. Cards and virtual disks report no wear. An error names the file: the wear is
 /// unknown.
-std::expected<Wear, std::string> wear_of(const std::string& folder, const std::string& block);
+std::expected<Wear, std::string> read_wear(const std::string& folder, const std::string& block);
 
 }  // namespace adit::host

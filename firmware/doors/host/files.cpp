@@ -58,7 +58,7 @@ bool fill(int fd, const std::string& text, int mode) {
 
 }  // namespace
 
-std::string trouble(const std::string& path, int error) {
+std::string path_error(const std::string& path, int error) {
   return path + ": " + loop::text_of(error);
 }
 
@@ -76,7 +76,7 @@ std::expected<File, int> slurp(const std::string& path, std::size_t most) {
   return file;
 }
 
-bool may_exist(const std::string& path) {
+bool can_exist(const std::string& path) {
   std::error_code unknown;
   return std::filesystem::exists(path, unknown) || unknown;
 }
@@ -93,7 +93,7 @@ void set_damaged_aside(const std::string& path, std::string_view what, const std
 
 std::expected<std::string, std::string> read_file(const std::string& path) {
   auto file = slurp(path);
-  if (!file) return std::unexpected(trouble(path, file.error()));
+  if (!file) return std::unexpected(path_error(path, file.error()));
   return strip_checksum(std::move(file->text));
 }
 
@@ -106,13 +106,13 @@ std::string strip_checksum(std::string text) {
 std::expected<void, std::string> write_file(const std::string& path, const std::string& text, int mode) {
   const std::string temporary = path + kBeingWritten;
   const FileDescriptor fd = make_new(temporary);
-  if (!fd) return std::unexpected(trouble(path, errno));
+  if (!fd) return std::unexpected(path_error(path, errno));
   if (!fill(fd.get(), text, mode) || rename(temporary.c_str(), path.c_str()) != 0) {
     const int error = errno;
     unlink(temporary.c_str());
-    return std::unexpected(trouble(path, error));
+    return std::unexpected(path_error(path, error));
   }
-  if (!sync_folder(path)) return std::unexpected(trouble(folder_of(path), errno));
+  if (!sync_folder(path)) return std::unexpected(path_error(folder_of(path), errno));
   return {};
 }
 
@@ -137,7 +137,7 @@ std::expected<void, std::string> overwrite(const std::string& path, const std::s
   const FileDescriptor fd = loop::open_regular(path, O_WRONLY | O_NOFOLLOW);
   const bool is_written = fd && loop::write_all(fd.get(), text, 0) == 0 &&
                           ftruncate(fd.get(), static_cast<off_t>(text.size())) == 0 && fsync(fd.get()) == 0;
-  if (!is_written) return std::unexpected(trouble(path, errno));
+  if (!is_written) return std::unexpected(path_error(path, errno));
   return {};
 }
 
@@ -179,10 +179,10 @@ std::expected<std::vector<std::string>, std::string> names_in(const std::string&
 std::expected<void, std::string> remove_file(const std::string& path) {
   for (const std::string& each : {path + kCopy, path}) {
     if (unlink(each.c_str()) != 0 && errno != ENOENT)
-      return std::unexpected(trouble(each + ": cannot be removed", errno));
+      return std::unexpected(path_error(each + ": cannot be removed", errno));
   }
   // Also for an absent file, because the sync after an earlier removal may have failed.
-  if (!sync_folder(path) && errno != ENOENT) return std::unexpected(trouble(folder_of(path), errno));
+  if (!sync_folder(path) && errno != ENOENT) return std::unexpected(path_error(folder_of(path), errno));
   return {};
 }
 
@@ -214,7 +214,7 @@ std::expected<std::vector<std::uint64_t>, std::string> numbers_in(const std::str
     if (const auto number = number_in_name(name, prefix, ending)) numbers.push_back(*number);
     return true;
   });
-  if (!read && read.error() != ENOENT) return std::unexpected(trouble(folder, read.error()));
+  if (!read && read.error() != ENOENT) return std::unexpected(path_error(folder, read.error()));
   std::ranges::sort(numbers);
   return numbers;
 }

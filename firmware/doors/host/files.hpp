@@ -28,7 +28,7 @@ std::string strip_checksum(std::string text);
 bool sync_folder(const std::string& path);
 
 /// "PATH: No such file or directory"
-std::string trouble(const std::string& path, int error);
+std::string path_error(const std::string& path, int error);
 
 /// The name of a numbered file, with at least eight digits: "map-00000012.cbor".
 std::string numbered_name(std::string_view prefix, std::uint64_t number, std::string_view ending = "");

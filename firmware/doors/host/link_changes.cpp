@@ -26,7 +26,7 @@ std::optional<bool> carrier(const std::string& interface) {
 namespace {
 
 /// A socket that receives the kernel's messages to these groups.
-loop::FileDescriptor told_to(unsigned groups) {
+loop::FileDescriptor open_netlink(unsigned groups) {
   loop::FileDescriptor changes(socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, NETLINK_ROUTE));
   sockaddr_nl address{};
   address.nl_family = AF_NETLINK;
@@ -39,10 +39,10 @@ loop::FileDescriptor told_to(unsigned groups) {
 }  // namespace
 
 loop::FileDescriptor link_changes() {
-  return told_to(RTMGRP_LINK);
+  return open_netlink(RTMGRP_LINK);
 }
 loop::FileDescriptor link_and_address_changes() {
-  return told_to(RTMGRP_LINK | RTMGRP_IPV4_IFADDR);
+  return open_netlink(RTMGRP_LINK | RTMGRP_IPV4_IFADDR);
 }
 
 /// Discards the messages, because some are lost when too many come at once (ENOBUFS).

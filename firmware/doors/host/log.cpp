@@ -25,7 +25,7 @@ Memory& memory() {
 }
 
 /// Thread-safe.
-class KeptOut {
+class LogRedaction {
  public:
   void set(icd::Redaction redaction) {
     const std::scoped_lock lock(mutex_);
@@ -41,8 +41,8 @@ class KeptOut {
   icd::Redaction redaction_;
 };
 
-KeptOut& kept_out() {
-  static KeptOut secrets;
+LogRedaction& log_redaction() {
+  static LogRedaction secrets;
   return secrets;
 }
 
@@ -78,15 +78,15 @@ void log(Level level, std::string_view message, std::initializer_list<Field> fie
 }
 
 void keep_out_of_log(icd::Redaction redaction) {
-  kept_out().set(std::move(redaction));
+  log_redaction().set(std::move(redaction));
 }
 
 std::string strip_secrets(std::string text) {
-  kept_out().strike_from(text);
+  log_redaction().strike_from(text);
   return text;
 }
 
-void tell_console(Level level, std::string_view message, std::initializer_list<Field> fields) {
+void log_to_console(Level level, std::string_view message, std::initializer_list<Field> fields) {
   if (level > kLeast) return;
   const double at = loop::system_now();
   memory().keep(at, level, message, {});

@@ -47,9 +47,9 @@ bool log_failure(Level level, std::string_view message, const std::expected<T, E
 }
 
 /// As log(), for a person at the console: secrets stay in the text, and the stored record has no fields.
-void tell_console(Level level, std::string_view message, std::initializer_list<Field> fields);
+void log_to_console(Level level, std::string_view message, std::initializer_list<Field> fields);
 
-/// Removes these secrets from all later records, except from tell_console().
+/// Removes these secrets from all later records, except from log_to_console().
 void keep_out_of_log(icd::Redaction redaction);
 /// The text with those secrets removed.
 std::string strip_secrets(std::string text);

@@ -35,10 +35,10 @@ void Memory::keep(double at, Level level, std::string_view message, std::span<co
   record.seq = ++last_;
   bytes_ += bytes_of(record);
   records_.push_back(std::move(record));
-  while (records_.size() > kMost || bytes_ > kMostBytes) drop_the_oldest();
+  while (records_.size() > kMost || bytes_ > kMostBytes) drop_oldest();
 }
 
-void Memory::drop_the_oldest() {
+void Memory::drop_oldest() {
   bytes_ -= bytes_of(records_.front());
   records_.pop_front();
 }

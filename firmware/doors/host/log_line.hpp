@@ -28,7 +28,7 @@ class Memory {
   std::uint64_t last() const;
 
  private:
-  void drop_the_oldest();
+  void drop_oldest();
 
   mutable std::mutex mutex_;
   std::deque<Record> records_;  // by number, without gaps

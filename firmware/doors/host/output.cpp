@@ -90,7 +90,7 @@ class PipeReader {
  public:
   PipeReader(int fd, std::string& heard) : fd_(fd), heard_(heard) {}
   int fd() const { return over_ ? -1 : fd_; }  // poll(2) ignores -1
-  bool is_over() const { return over_; }
+  bool is_at_end() const { return over_; }
 
   void read() {
     char buffer[4096];
@@ -105,7 +105,7 @@ class PipeReader {
     told_ -= std::min(told_, surplus);
   }
   /// Reports whole lines that have not been reported.
-  void tell(const std::function<void(std::string_view)>& line) {
+  void emit_lines(const std::function<void(std::string_view)>& line) {
     for (std::size_t end; (end = heard_.find('\n', told_)) != std::string::npos; told_ = end + 1) {
       if (line) line(std::string_view(heard_).substr(told_, end - told_));
     }
@@ -119,9 +119,9 @@ class PipeReader {
 };
 
 /// Reads both outputs to their ends. False: not by `until`.
-bool hear(PipeReader& out, PipeReader& err, Clock::time_point until,
-          const std::function<void(std::string_view)>& line) {
-  while (!out.is_over() || !err.is_over()) {
+bool read_outputs(PipeReader& out, PipeReader& err, Clock::time_point until,
+                  const std::function<void(std::string_view)>& line) {
+  while (!out.is_at_end() || !err.is_at_end()) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
     pollfd ready[] = {{out.fd(), POLLIN, 0}, {err.fd(), POLLIN, 0}};
     const int count = left > 0 ? poll(ready, 2, static_cast<int>(left)) : 0;
@@ -129,7 +129,7 @@ bool hear(PipeReader& out, PipeReader& err, Clock::time_point until,
     if (count <= 0) return false;
     if (ready[0].revents != 0) {
       out.read();
-      out.tell(line);
+      out.emit_lines(line);
     }
     if (ready[1].revents != 0) err.read();
   }
@@ -152,7 +152,7 @@ Output output_of(const std::vector<std::string>& words, std::chrono::millisecond
   out->to = loop::FileDescriptor();
   err->to = loop::FileDescriptor();
   PipeReader outs(out->from.get(), output.out), errs(err->from.get(), output.err);
-  const bool in_time = hear(outs, errs, Clock::now() + within, line);
+  const bool in_time = read_outputs(outs, errs, Clock::now() + within, line);
   if (!in_time) kill(*process, SIGKILL);
   output.trouble = await_end(*process);
   if (!in_time) output.trouble = "took longer than " + std::to_string(within.count()) + " ms";

@@ -18,7 +18,7 @@ std::expected<std::optional<std::string>, std::string> read_optional_file(const 
   auto file = slurp(path);
   if (file) return std::move(file->text);
   if (file.error() == ENOENT) return std::nullopt;
-  return std::unexpected(trouble(path, file.error()));
+  return std::unexpected(path_error(path, file.error()));
 }
 
 void withdraw_request(const std::string& path, const std::string& program) {
@@ -30,7 +30,7 @@ void StatusFile::log_unreadable(const std::string& why) {
   log(Level::Error, "cannot read the status", {{"why", why}});
 }
 
-std::expected<bool, std::string> StatusFile::tell_text(std::string text) {
+std::expected<bool, std::string> StatusFile::write_text(std::string text) {
   if (text == told_) return false;
   if (auto written = write_file(path_, text, kForAll); !written) {
     log(Level::Error, "cannot write the status", {{"why", written.error()}});
@@ -43,7 +43,7 @@ std::expected<bool, std::string> StatusFile::tell_text(std::string text) {
 std::expected<std::optional<UntrustedFolder>, std::string> open_requests(const std::string& directory) {
   auto folder = UntrustedFolder::open(directory);
   if (folder) return *std::move(folder);
-  if (may_exist(directory)) return std::unexpected(std::move(folder.error()));
+  if (can_exist(directory)) return std::unexpected(std::move(folder.error()));
   log(Level::Info, "no requests: their directory does not exist", {{"directory", directory}});
   return std::nullopt;
 }

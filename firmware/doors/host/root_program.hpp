@@ -42,7 +42,7 @@ std::expected<std::optional<Row>, std::string> read_row(const std::string& path)
 
 /// Writes a request into aditd's state directory. Replaces an unread one of that name.
 template <class Request>
-std::expected<void, std::string> leave_request(const std::string& directory, const char* file,
+std::expected<void, std::string> write_request(const std::string& directory, const char* file,
                                                const Request& request) {
   return write_file(directory + '/' + file, codec::write_file(request), kOursAlone);
 }
@@ -71,7 +71,7 @@ class RootProgram {
         requests_(std::move(requests)),
         directory_(std::move(directory)),
         within_(within),
-        started_until_(may_exist(units + '/' + name_ + ".service") ? loop.now() + kBoot : loop.now()) {}
+        started_until_(can_exist(units + '/' + name_ + ".service") ? loop.now() + kBoot : loop.now()) {}
 
   const std::string& requests() const { return requests_; }
   const std::string& directory() const { return directory_; }
@@ -102,18 +102,18 @@ class RootProgram {
 
   /// Writes a request that the status does not name.
   template <class Request>
-  std::expected<void, std::string> leave(const char* file, const Request& request) const {
-    return leave_request(requests_, file, request);
+  std::expected<void, std::string> submit(const char* file, const Request& request) const {
+    return write_request(requests_, file, request);
   }
-  /// Writes a request with a new nonce and follows it: waits(), trouble().
+  /// Writes a request with a new nonce and follows it: is_pending(), trouble().
   template <class Request>
   std::expected<void, std::string> ask(const char* file, const Request& request) {
-    auto left = leave(file, request);
-    if (left) asked_ = Asked{.nonce = request.nonce, .file = file, .at = loop_.now()};
+    auto left = submit(file, request);
+    if (left) asked_ = PendingRequest{.nonce = request.nonce, .file = file, .at = loop_.now()};
     return left;
   }
   /// Whether the last request is neither named by the status nor withdrawn.
-  bool waits() const {
+  bool is_pending() const {
     refresh();
     return asked_ && !asked_->is_withdrawn;
   }
@@ -127,14 +127,14 @@ class RootProgram {
   /// true.
   bool check() {
     read();
-    if (!waits() || loop_.now() < asked_->at + within_) return false;
+    if (!is_pending() || loop_.now() < asked_->at + within_) return false;
     asked_->is_withdrawn = true;
     withdraw_request(requests_ + '/' + asked_->file, name_);
     return true;
   }
 
  private:
-  struct Asked {
+  struct PendingRequest {
     std::string nonce;
     const char* file;
     loop::Instant at;
@@ -161,7 +161,7 @@ class RootProgram {
   const loop::Instant started_until_;
   mutable std::expected<std::shared_ptr<const Status>, std::string> status_;  // null: no file
   mutable std::optional<loop::Instant> read_at_;
-  mutable std::optional<Asked> asked_;  // the last request, until the status names it
+  mutable std::optional<PendingRequest> asked_;  // the last request, until the status names it
 };
 
 // For the root program.
@@ -172,7 +172,7 @@ class StatusFile {
   explicit StatusFile(std::string path) : path_(std::move(path)) {}
 
   /// The status of an earlier start in this boot, or std::nullopt at the first start. A file that cannot be
-  /// read is logged and gives an empty status; the next tell() replaces it.
+  /// read is logged and gives an empty status; the next write() replaces it.
   template <class Status>
   std::optional<Status> read_earlier() const {
     auto status = read_row<Status>(path_);
@@ -182,13 +182,13 @@ class StatusFile {
   }
   /// Writes a changed status. Returns whether it was written. An error is logged.
   template <class Status>
-  std::expected<bool, std::string> tell(const Status& status) {
-    return tell_text(codec::write_file(status));
+  std::expected<bool, std::string> write(const Status& status) {
+    return write_text(codec::write_file(status));
   }
 
  private:
   static void log_unreadable(const std::string& why);
-  std::expected<bool, std::string> tell_text(std::string text);
+  std::expected<bool, std::string> write_text(std::string text);
 
   std::string path_, told_;
 };

@@ -35,7 +35,7 @@ enum class Place : std::uint8_t { Saved, Given, Credentials };
 std::expected<Token, Fault> read_one(const std::string& path, Place place) {
   const auto file = slurp(path);
   if (!file && file.error() == ENOENT) return Token();
-  if (!file) return std::unexpected(Fault{trouble(path, file.error()), true});
+  if (!file) return std::unexpected(Fault{path_error(path, file.error()), true});
   if (place != Place::Credentials && (file->status.st_mode & 077) != 0) {
     return std::unexpected(Fault{path + ": other users may read or write it; run: chmod 600 " + path});
   }
@@ -80,7 +80,7 @@ icd::Redaction Secrets::redaction() const {
   return icd::Redaction(std::move(all));
 }
 
-std::map<std::string, std::string> Secrets::odd_tokens() const {
+std::map<std::string, std::string> Secrets::token_warnings() const {
   constexpr std::size_t kLength = 16;
   std::map<std::string, std::string> odd = damaged;
   for (const auto& [name, token] : tokens) {
@@ -113,7 +113,7 @@ std::expected<Secrets, std::string> read_secrets(const std::string& given, const
         secrets.damaged[name] =
             icd::sentence("the saved token ", name, " is lost; set it again: ", file, " is gone");
       else if (mark.error() != ENOENT)
-        secrets.unread = trouble(mark_file, mark.error());
+        secrets.unread = path_error(mark_file, mark.error());
       if (mark || mark.error() != ENOENT) continue;
       token = read_token(given + "/" + name + ".token", place);
     }
@@ -130,7 +130,7 @@ std::expected<Secrets, std::string> read_secrets(const std::string& given, const
   }
   for (const std::string& file : {saved + '/' + kReplacedFile, saved + '/' + kReplacedFile + kCopy}) {
     const auto replaced = slurp(file);
-    if (!replaced && replaced.error() != ENOENT) secrets.unread = trouble(file, replaced.error());
+    if (!replaced && replaced.error() != ENOENT) secrets.unread = path_error(file, replaced.error());
     const std::string lines = replaced ? strip_checksum(replaced->text) : "";
     for (std::string_view rest = lines; !rest.empty();) {
       if (auto token = icd::BearerToken::parse(icd::cut(rest, '\n'))) secrets.replaced.push_back(*token);

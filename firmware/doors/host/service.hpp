@@ -14,7 +14,7 @@
 namespace adit::host {
 
 /// False only if the file or directory is known to be absent. An error gives true.
-bool may_exist(const std::string& path);
+bool can_exist(const std::string& path);
 
 inline constexpr const char* kDamaged = ".damaged";
 /// Renames an unreadable file or directory to PATH + kDamaged, over an earlier one, for examination by a
@@ -50,7 +50,7 @@ auto parse_kept(const std::string& path, Parse parse)
   if (!text) return std::unexpected(text.error());
   auto parsed = parse(std::string_view(*text));
   if (parsed) return parsed;
-  if (!may_exist(path + kCopy)) return parsed;
+  if (!can_exist(path + kCopy)) return parsed;
   const auto copy = read_file(path + kCopy);
   if (!copy) return std::unexpected(copy.error());
   auto copied = parse(std::string_view(*copy));
@@ -90,7 +90,7 @@ struct Secrets {
   icd::Redaction redaction() const;
   /// Sentences by name: damaged tokens, and tokens of the Command Post with a length other than the ICD's
   /// (4).
-  std::map<std::string, std::string> odd_tokens() const;
+  std::map<std::string, std::string> token_warnings() const;
   std::optional<icd::BearerToken> token(std::string_view name) const {
     const auto found = tokens.find(name);
     return found == tokens.end() ? std::nullopt : std::optional(found->second);

@@ -54,13 +54,13 @@ std::optional<std::chrono::microseconds> watchdog_interval() {
   return std::chrono::microseconds(usec);
 }
 
-std::expected<std::vector<Inherited>, std::string> inherited_sockets() {
+std::expected<std::vector<InheritedDescriptor>, std::string> inherited_sockets() {
   char** names = nullptr;
   const int count = sd_listen_fds_with_names(1, &names);
   if (count < 0) {
     return std::unexpected(std::string("reading the sockets from systemd: ") + std::strerror(-count));
   }
-  std::vector<Inherited> all;
+  std::vector<InheritedDescriptor> all;
   for (int i = 0; i < count; ++i) {
     const std::unique_ptr<char, decltype(&std::free)> name(names[i], &std::free);
     all.push_back({.name = name.get(), .descriptor = loop::FileDescriptor(SD_LISTEN_FDS_START + i)});
@@ -88,13 +88,13 @@ void require_success(int result, const char* doing) {
 
 }  // namespace
 
-void restart_process(std::vector<Inherited> sockets, char* const* arguments,
+void restart_process(std::vector<InheritedDescriptor> sockets, char* const* arguments,
                      std::map<std::string, std::string> variables) {
   const int count = static_cast<int>(sockets.size());
   std::string names;
   require_success(close_range(SD_LISTEN_FDS_START, ~0U, CLOSE_RANGE_CLOEXEC), "closing descriptors");
   // Copies above all final places first, because a final place may be another socket's.
-  for (Inherited& each : sockets) {
+  for (InheritedDescriptor& each : sockets) {
     each.descriptor =
         loop::FileDescriptor(fcntl(each.descriptor.get(), F_DUPFD_CLOEXEC, SD_LISTEN_FDS_START + count));
     require_success(each.descriptor.get(), "copying a socket");

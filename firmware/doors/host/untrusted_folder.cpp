@@ -26,23 +26,23 @@ loop::FileDescriptor open_file(const loop::FileDescriptor& folder, const std::st
 
 std::expected<UntrustedFolder, std::string> UntrustedFolder::open(const std::string& path) {
   loop::FileDescriptor folder(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
-  if (!folder) return std::unexpected(trouble(path, errno));
+  if (!folder) return std::unexpected(path_error(path, errno));
   return UntrustedFolder(std::move(folder));
 }
 
-std::expected<std::optional<std::string>, UntrustedFolder::Untaken> UntrustedFolder::take_file(
+std::expected<std::optional<std::string>, UntrustedFolder::ReadFailure> UntrustedFolder::take_file(
     const std::string& name) {
   auto text = read(name);
   if (text && !*text) return std::nullopt;
   if (auto gone = remove(name); !gone)
-    return std::unexpected(Untaken{.why = std::move(gone.error()), .stays = true});
-  if (!text) return std::unexpected(Untaken{.why = std::move(text.error())});
+    return std::unexpected(ReadFailure{.why = std::move(gone.error()), .stays = true});
+  if (!text) return std::unexpected(ReadFailure{.why = std::move(text.error())});
   return *std::move(text);
 }
 
 std::expected<void, std::string> UntrustedFolder::remove(const std::string& name) {
   if (unlinkat(folder_.get(), name.c_str(), 0) == 0 || errno == ENOENT) return {};
-  const auto stays = [&name] { return std::unexpected("cannot remove it: " + trouble(name, errno)); };
+  const auto stays = [&name] { return std::unexpected("cannot remove it: " + path_error(name, errno)); };
   if (errno != EISDIR) return stays();
   const std::string path = path_by_descriptor() + '/' + name;
   std::string aside = path + ".XXXXXX";
@@ -61,9 +61,9 @@ std::expected<void, std::string> UntrustedFolder::remove(const std::string& name
 std::expected<std::optional<std::string>, std::string> UntrustedFolder::read(const std::string& name) const {
   const loop::FileDescriptor fd = open_file(folder_, name, O_RDONLY);
   if (!fd && errno == ENOENT) return std::nullopt;
-  if (!fd) return std::unexpected(trouble(name, errno));
+  if (!fd) return std::unexpected(path_error(name, errno));
   auto text = loop::read_all(fd, kLargest);
-  if (!text) return std::unexpected(trouble(name, text.error()));
+  if (!text) return std::unexpected(path_error(name, text.error()));
   return std::move(*text);
 }
 
@@ -72,7 +72,7 @@ std::expected<std::optional<UntrustedFolder>, std::string> UntrustedFolder::fold
   loop::FileDescriptor fd(
       openat(folder_.get(), name.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
   if (!fd && errno == ENOENT) return std::nullopt;
-  if (!fd) return std::unexpected(trouble(name, errno));
+  if (!fd) return std::unexpected(path_error(name, errno));
   return UntrustedFolder(std::move(fd));
 }
 

@@ -19,13 +19,13 @@ class UntrustedFolder {
   /// Error: the directory does not exist, or is a link.
   static std::expected<UntrustedFolder, std::string> open(const std::string& path);
 
-  struct Untaken {
+  struct ReadFailure {
     std::string why = "";
     bool stays = false;  // cannot be removed, and would be found again
   };
   /// Removes a file and returns its content. std::nullopt: no such file. Error: not a plain file, too large
   /// or unreadable; removed in any case unless `stays`.
-  std::expected<std::optional<std::string>, Untaken> take_file(const std::string& name);
+  std::expected<std::optional<std::string>, ReadFailure> take_file(const std::string& name);
 
   /// Removes an entry of any type. If a directory cannot be deleted (it may be deeper than files can be
   /// opened), frees its name: the rest is NAME.XXXXXX.

@@ -16,7 +16,7 @@ void append_field(std::string& text, std::string_view name, std::string_view val
   text.append(name).append(": ").append(value).append("\r\n");
 }
 
-bool may_have_body(const Answer& answer) {
+bool can_have_body(const Answer& answer) {
   return answer.status != icd::Status::NoContent;
 }
 
@@ -32,7 +32,7 @@ void add_fields(const Answer& answer, const Add& add) {
   const auto add_valid = [&add](const std::string& name, const std::string& value) {
     if (is_field_value(value)) add(name.c_str(), value.c_str());
   };
-  if (may_have_body(answer)) add_valid(MHD_HTTP_HEADER_CONTENT_TYPE, answer.content_type);
+  if (can_have_body(answer)) add_valid(MHD_HTTP_HEADER_CONTENT_TYPE, answer.content_type);
   for (const Header& header : answer.headers) add_valid(header.name, header.value);
   if (lacks_retry_after(answer)) add_valid(MHD_HTTP_HEADER_RETRY_AFTER, "1");
 }
@@ -43,7 +43,7 @@ Answer error_answer(icd::Status status, std::string_view sentence) {
   return {.status = status, .body = codec::json_string(sentence), .headers = {}};
 }
 
-void let_pages_read(Answer& answer) {
+void allow_any_origin(Answer& answer) {
   answer.headers.push_back({"Access-Control-Allow-Origin", "*"});
   answer.headers.push_back(
       {"Access-Control-Expose-Headers", "Age, Retry-After, Adit-Report, Adit-Reconciled"});
@@ -71,12 +71,12 @@ std::string last_answer_text(const Answer& answer, bool with_body) {
   const auto code = static_cast<unsigned>(answer.status);
   std::string text = "HTTP/1.1 " + std::to_string(code) + " " + MHD_get_reason_phrase_for(code) + "\r\n";
   append_field(text, MHD_HTTP_HEADER_CONNECTION, "close");
-  if (may_have_body(answer)) {
+  if (can_have_body(answer)) {
     append_field(text, MHD_HTTP_HEADER_CONTENT_LENGTH, std::to_string(answer.body.size()));
   }
   add_fields(answer, [&text](const char* name, const char* value) { append_field(text, name, value); });
   text += "\r\n";
-  if (with_body && may_have_body(answer)) text += answer.body;
+  if (with_body && can_have_body(answer)) text += answer.body;
   return text;
 }
 

@@ -13,7 +13,7 @@ namespace adit::intake {
 Answer error_answer(icd::Status status, std::string_view sentence);
 
 /// Lets a web page of any origin read the answer and its headers (Fetch, CORS protocol).
-void let_pages_read(Answer& answer);
+void allow_any_origin(Answer& answer);
 
 /// True if `text` is a field value: not empty, without control characters except the tab (RFC 9110 5.5).
 bool is_field_value(std::string_view text);

@@ -58,7 +58,7 @@ void Deadline::expect_nothing() {
   at_ = loop::Instant::max();
 }
 
-void Deadline::client_ended() {
+void Deadline::on_client_end() {
   if (!std::exchange(ended_, true) && bytes_expected_) expect_bytes(kAfterEnd);
 }
 
@@ -67,30 +67,30 @@ bool Deadline::is_late() {
     expect_bytes(kAfterEnd);
     return false;
   }
-  if (keeps_up()) return false;
+  if (is_fast_enough()) return false;
   expect_nothing();
   return true;
 }
 
-bool Deadline::keeps_up() {
+bool Deadline::is_fast_enough() {
   if (!rate_) return false;
   if (!bytes_expected_) {
     const std::uint64_t before = std::exchange(taken_before_, gate_.traffic().taken);
     rate_->count_bytes(taken_before_ - before);
   }
   if (rate_->is_too_slow(engine_.now())) return false;
-  set(rate_->look_at());
+  set(rate_->next_check());
   return true;
 }
 
 void Deadline::expect_rate() {
   rate_.emplace(engine_.listen().rate_over, engine_.now());
-  set(rate_->look_at());
+  set(rate_->next_check());
 }
 
 void Deadline::set(loop::Instant when) {
   at_ = when;
-  engine_.look_at(at_);
+  engine_.schedule_check(at_);
 }
 
 namespace {
@@ -123,7 +123,7 @@ Client::Client(Engine& engine, loop::Loop& loop, MHD_Connection* connection, int
       addresses_(std::move(addresses)),
       gate_(fd, addresses_.proxy_header),
       deadline_(engine, gate_),
-      look_again_(loop.timer([this] { look_at_head(); })) {
+      look_again_(loop.timer([this] { check_head(); })) {
   // libmicrohttpd does not watch the sockets of suspended connections, and misses an end that arrives
   // together with the last bytes. Edge-triggered, because unread bytes would be reported again and again.
   arrivals_ =
@@ -131,26 +131,27 @@ Client::Client(Engine& engine, loop::Loop& loop, MHD_Connection* connection, int
   await_head();
 }
 
-std::optional<Held> Client::held_share() const {
+std::optional<ConnectionInfo> Client::held_share() const {
   if (leaving_ || hung_up_) return std::nullopt;
-  return Held{.number = number_,
-              .address = addresses_.peer,
-              .known = deadline_.is_authenticated(),
-              .doing = doing(),
-              .since = stage_.since};
+  return ConnectionInfo{.number = number_,
+                        .address = addresses_.peer,
+                        .known = deadline_.is_authenticated(),
+                        .doing = activity(),
+                        .since = stage_.since};
 }
 
-Held::Activity Client::doing() const {
-  if (stage_.phase == Phase::Idle) return Held::Activity::Idle;
-  if (stage_.phase == Phase::Head && gate_.has_unseen()) return Held::Activity::Fresh;
-  if (stage_.phase == Phase::Head || request_->is_sending()) return Held::Activity::Sending;
-  return deadline_.has_client_ended() && suspended_ ? Held::Activity::Left : Held::Activity::Waiting;
+ConnectionInfo::Activity Client::activity() const {
+  if (stage_.phase == Phase::Idle) return ConnectionInfo::Activity::Idle;
+  if (stage_.phase == Phase::Head && gate_.has_unseen()) return ConnectionInfo::Activity::Fresh;
+  if (stage_.phase == Phase::Head || request_->is_sending()) return ConnectionInfo::Activity::Sending;
+  return deadline_.has_client_ended() && suspended_ ? ConnectionInfo::Activity::Left
+                                                    : ConnectionInfo::Activity::Waiting;
 }
 
 void Client::give_way() {
-  engine_.tell(stage_.phase == Phase::Idle ? Ended::Idle : Ended::GaveWay, addresses_.peer);
+  engine_.on_closed(stage_.phase == Phase::Idle ? CloseReason::Idle : CloseReason::GaveWay, addresses_.peer);
   if (stage_.phase == Phase::Head || (stage_.phase == Phase::Request && request_->is_unanswered())) {
-    say_last(last_answer_text(
+    write_last(last_answer_text(
         error_answer(icd::Status::ServiceUnavailable,
                      "too many connections are open; this connection was closed for another; try again"),
         true));
@@ -159,35 +160,35 @@ void Client::give_way() {
 }
 
 void Client::on_events(std::uint32_t events) {
-  if ((events & EPOLLIN) != 0) gate_.bytes_came();
+  if ((events & EPOLLIN) != 0) gate_.on_bytes();
   if ((events & (EPOLLHUP | EPOLLERR)) != 0) {
     hung_up_ = true;
     if (reads_ && suspended_) return cut();
-    if (reads_) return read_on();
+    if (reads_) return resume_reading();
     resume();
     return;
   }
-  if ((events & EPOLLRDHUP) != 0) deadline_.client_ended();
-  if (reads_) return read_on();
-  look_at_head();
+  if ((events & EPOLLRDHUP) != 0) deadline_.on_client_end();
+  if (reads_) return resume_reading();
+  check_head();
 }
 
-void Client::hold_back() {
-  if (reads_) return read_on();
+void Client::pause_reading() {
+  if (reads_) return resume_reading();
   if (hung_up_ || leaving_) return;
   suspend();
   if (stage_.phase == Phase::Head) {
     on_events(state_of(fd_));
   } else if (gate_.has_new_bytes() || deadline_.has_client_ended()) {  // on_events() will tell later bytes
-    look_at_head();
+    check_head();
   }
 }
 
-void Client::look_at_head() {
+void Client::check_head() {
   const bool has_ended = deadline_.has_client_ended();
   if (gate_.has_refused() && (!gate_.discard_received() || has_ended)) cut();
   if (!gate_.is_waiting() || !suspended_) return;
-  switch (gate_.look(engine_.now(), has_ended)) {
+  switch (gate_.check_bytes(engine_.now(), has_ended)) {
     case Gate::Finding::Whole:
       reads_ = gate_.next_is_chunked();
       resume();
@@ -196,7 +197,7 @@ void Client::look_at_head() {
       refuse_head();
       return;
     case Gate::Finding::Later:
-      look_again_.call_at(gate_.next_look_at());
+      look_again_.call_at(gate_.next_check());
       break;
     case Gate::Finding::Begun:
       if (stage_.phase != Phase::Idle) break;
@@ -211,25 +212,25 @@ void Client::look_at_head() {
 void Client::refuse_head() {
   const HeadChecker& head = gate_.head();
   Answer answer = error_answer(head.refusal().status, head.refusal().sentence);
-  if (head.names_icd_uri()) let_pages_read(answer);
-  say_last(last_answer_text(answer, !head.is_head_method()));
+  if (head.names_icd_uri()) allow_any_origin(answer);
+  write_last(last_answer_text(answer, !head.is_head_method()));
   enter(Phase::Head);
   deadline_.expect_last_reading();
-  look_at_head();
+  check_head();
 }
 
 bool Client::begin_chunked() {
   if (!gate_.consume_head()) return false;
   const auto begin = [this] {
     engine_.begin_request(*this);
-    return Next::GoOn;
+    return ConnectionAction::KeepOpen;
   };
-  return run_guarded(begin) == Next::GoOn;
+  return run_guarded(begin) == ConnectionAction::KeepOpen;
 }
 
 /// libmicrohttpd does not take part: version 0.9 accepts chunks that RFC 9112 does not allow, and version 1
 /// misreads extensions and refuses without a sentence.
-void Client::read_on() {
+void Client::resume_reading() {
   if (stage_.phase != Phase::Request && !begin_chunked()) return cut();
   std::array<std::uint8_t, kPieceBytes> bytes;  // NOLINT(cppcoreguidelines-pro-type-member-init)
   for (int left = kPiecesAtOnce; reads_ && !suspended_; --left) {
@@ -238,7 +239,7 @@ void Client::read_on() {
       engine_.schedule_run();
       return;
     }
-    Next next = Next::Close;
+    ConnectionAction next = ConnectionAction::Close;
     if (request_->has_unended_body()) {
       next = run_guarded([this] { return request_->end(); });
     } else {
@@ -248,12 +249,12 @@ void Client::read_on() {
         next = run_guarded([&] { return request_->body({bytes.data(), static_cast<std::size_t>(size)}); });
       }
     }
-    if (next == Next::Close) cut();
+    if (next == ConnectionAction::Close) cut();
   }
 }
 
-Next Client::fail() {
-  Next next = Next::Close;
+ConnectionAction Client::fail() {
+  ConnectionAction next = ConnectionAction::Close;
   if (request_) loop::run_guarded("the answer to a failed request", [&] { next = request_->on_failed(); });
   return next;
 }
@@ -272,7 +273,7 @@ void Client::on_request_end(bool is_answered) {
   gate_.on_request_end();
   if (!gate_.is_waiting()) return;
   if (stays) {
-    hold_back();  // now, because later libmicrohttpd has added the socket to its epoll set
+    pause_reading();  // now, because later libmicrohttpd has added the socket to its epoll set
   } else {
     engine_.schedule_hold_back(number_);  // libmicrohttpd is perhaps about to close it
   }
@@ -280,7 +281,7 @@ void Client::on_request_end(bool is_answered) {
 
 bool Client::client_keeps_connection() const {
   const std::string_view said = request_->head().header("Connection");
-  return !gate_.framing().is_version_1_0 && (said.empty() || icd::same_but_for_case(said, "keep-alive"));
+  return !gate_.framing().is_version_1_0 && (said.empty() || icd::equals_ignoring_case(said, "keep-alive"));
 }
 
 void Client::await_head() {
@@ -306,8 +307,8 @@ void Client::on_late() {
       cut();
       return;
     case Phase::Head:
-      engine_.tell(Ended::Slow, addresses_.peer);
-      say_last(last_answer_text(
+      engine_.on_closed(CloseReason::Slow, addresses_.peer);
+      write_last(last_answer_text(
           error_answer(icd::Status::RequestTimeout, "the head of the request took too long"), true));
       cut();
       return;
@@ -329,15 +330,15 @@ void Client::resume() {
   engine_.schedule_run();
 }
 
-void Client::say(std::string_view text) {
+void Client::write_text(std::string_view text) {
   // A few hundred bytes into an empty send buffer. A client that does not read loses the bytes that do not
   // fit.
   ::send(fd_, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
 }
 
-void Client::say_last(std::string_view text) {
+void Client::write_last(std::string_view text) {
   if (stage_.phase != Phase::Request) gate_.discard_received();
-  say(text);
+  write_text(text);
   ::shutdown(fd_, SHUT_WR);
 }
 

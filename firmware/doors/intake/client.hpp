@@ -20,7 +20,7 @@ namespace adit::intake {
 
 class Client;
 class Request;
-enum class Next : std::uint8_t;
+enum class ConnectionAction : std::uint8_t;
 
 /// The server as a Client sees it.
 class Engine {
@@ -31,9 +31,9 @@ class Engine {
   /// Runs libmicrohttpd soon, from the loop. Call this after each change that libmicrohttpd cannot see.
   virtual void schedule_run() = 0;
   /// Makes the server check its clients' deadlines at `when` or earlier.
-  virtual void look_at(loop::Instant when) = 0;
-  virtual void tell(Ended why, const std::string& address) = 0;
-  /// Calls hold_back() of the client `number` after libmicrohttpd has run.
+  virtual void schedule_check(loop::Instant when) = 0;
+  virtual void on_closed(CloseReason why, const std::string& address) = 0;
+  /// Calls pause_reading() of the client `number` after libmicrohttpd has run.
   virtual void schedule_hold_back(std::uint64_t number) = 0;
   /// The gate has let in a request.
   virtual void begin_request(Client& client) = 0;
@@ -48,8 +48,8 @@ class LeastRate {
   LeastRate(loop::Duration window, loop::Instant now) : half_(window / 2), look_at_(now + half_) {}
 
   void count_bytes(std::uint64_t bytes) { in_this_half_ += bytes; }
-  loop::Instant look_at() const { return look_at_; }
-  /// Call this once for each look_at(), at that time or later.
+  loop::Instant next_check() const { return look_at_; }
+  /// Call this once for each next_check(), at that time or later.
   bool is_too_slow(loop::Instant now) {
     const bool is_full = std::exchange(has_half_, true);
     const std::uint64_t moved = in_last_half_ + in_this_half_;
@@ -83,7 +83,7 @@ class Deadline {
   /// Listen::unauthenticated_within, an authenticated one within Listen::rate_over, or at the least rate.
   void expect_head();
   void expect_body();
-  void body_came(std::size_t bytes) {
+  void on_body(std::size_t bytes) {
     if (rate_) rate_->count_bytes(bytes);
   }
   /// The client must read its answer at the least rate. `taken`: of Gate::traffic() before the answer.
@@ -91,14 +91,14 @@ class Deadline {
   void expect_nothing();
 
   /// The client has closed its direction: libmicrohttpd has little time to read the last bytes.
-  void client_ended();
+  void on_client_end();
   bool has_client_ended() const { return ended_; }
   /// Call this after at(). False: the client has more time, until the new at(). True: it is late, and has no
   /// deadline any more.
   bool is_late();
 
  private:
-  bool keeps_up();
+  bool is_fast_enough();
   void set(loop::Instant when);
   void expect_rate();
 
@@ -137,17 +137,17 @@ class Client {
   bool is_secure() const { return addresses_.proxy_header > 0; }
   Engine& engine() const { return engine_; }
   /// For the shares; nullopt if the connection is closing.
-  std::optional<Held> held_share() const;
+  std::optional<ConnectionInfo> held_share() const;
   /// Closes the connection to make room for another one. If a request is not answered yet, the client gets a
   /// 503.
   void give_way();
   /// Both directions are closed, or the connection was reset. A client that has closed only its own direction
   /// may still read.
-  bool hung_up() const { return hung_up_; }
+  bool has_hung_up() const { return hung_up_; }
 
   /// Keeps libmicrohttpd from reading until the next request's head is whole and valid. Call this in its
   /// callbacks only at the end of a request whose connection stays. Reads on in a chunked body.
-  void hold_back();
+  void pause_reading();
   Gate& gate() { return gate_; }
   void request_begun(std::shared_ptr<Request> request);
   /// `is_answered`: the answer was sent completely.
@@ -155,8 +155,8 @@ class Client {
   const std::shared_ptr<Request>& request() const { return request_; }
   /// Calls `step`, which goes on with the request. If it throws, the request fails.
   template <class Step>
-  Next run_guarded(const Step& step) {
-    Next next{};
+  ConnectionAction run_guarded(const Step& step) {
+    ConnectionAction next{};
     return loop::run_guarded("a request", [&] { next = step(); }) ? next : fail();
   }
 
@@ -175,25 +175,25 @@ class Client {
   bool is_suspended() const { return suspended_; }
 
   /// Writes past libmicrohttpd, which must have no bytes to write.
-  void say(std::string_view text);
+  void write_text(std::string_view text);
   /// Then closes the sending direction.
-  void say_last(std::string_view text);
+  void write_last(std::string_view text);
   /// Closes both directions. libmicrohttpd notices in its next run.
   void cut();
 
  private:
-  Held::Activity doing() const;
+  ConnectionInfo::Activity activity() const;
   void enter(Phase phase) { stage_ = {.phase = phase, .since = engine_.now()}; }
   void await_head();
   /// RFC 9112 9.3. Also false if the answer is uncertain: a Connection field other than keep-alive, or
   /// HTTP/1.0.
   bool client_keeps_connection() const;
   void on_events(std::uint32_t events);
-  void look_at_head();
+  void check_head();
   void refuse_head();
-  Next fail();
+  ConnectionAction fail();
   bool begin_chunked();
-  void read_on();
+  void resume_reading();
 
   Engine& engine_;
   MHD_Connection* connection_;

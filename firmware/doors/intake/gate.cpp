@@ -40,7 +40,7 @@ bool Gate::has_unseen() const {
   return stage_ == Stage::Open || (stage_ == Stage::Waiting && looked_at_ == 0 && unread() > 0);
 }
 
-Gate::Finding Gate::look(loop::Instant now, bool at_once) {
+Gate::Finding Gate::check_bytes(loop::Instant now, bool at_once) {
   has_new_bytes_ = false;
   if (looked_at_ > 0 && !at_once) {
     const std::size_t there = unread();
@@ -53,11 +53,11 @@ Gate::Finding Gate::look(loop::Instant now, bool at_once) {
   if (size <= 0) return Finding::Nothing;
   looked_at_ = static_cast<std::size_t>(size);
   looked_ = now;
-  switch (head_.look({bytes.data(), looked_at_})) {
+  switch (head_.check({bytes.data(), looked_at_})) {
     case HeadChecker::Verdict::More:
       return Finding::Begun;
     case HeadChecker::Verdict::Whole:
-      take_sound_heads({bytes.data(), looked_at_});
+      pop_valid_heads({bytes.data(), looked_at_});
       stage_ = Stage::Open;
       return Finding::Whole;
     case HeadChecker::Verdict::Refused:
@@ -70,7 +70,7 @@ Gate::Finding Gate::look(loop::Instant now, bool at_once) {
 /// Notes the valid heads of the first request and of whole requests after it, because libmicrohttpd reads
 /// them together. Not those after a chunked one, or of a chunked one after others: libmicrohttpd must not
 /// read it.
-void Gate::take_sound_heads(std::string_view bytes) {
+void Gate::pop_valid_heads(std::string_view bytes) {
   sound_.clear();
   next_ = 0;
   HeadChecker head = head_;
@@ -82,14 +82,14 @@ void Gate::take_sound_heads(std::string_view bytes) {
     if (!length || *length >= left) return;
     bytes.remove_prefix(head.size() + static_cast<std::size_t>(*length));
     head = {};
-    if (head.look(bytes) != HeadChecker::Verdict::Whole) return;
+    if (head.check(bytes) != HeadChecker::Verdict::Whole) return;
   }
 }
 
 bool Gate::admit_request() {
   if (stage_ != Stage::Open) return false;
   stage_ = Stage::Entered;
-  Sound& sound = sound_[next_++];
+  ValidHead& sound = sound_[next_++];
   framing_ = sound.framing;
   head_text_ = std::move(sound.head);
   requests_end_ += head_text_.size() + framing_.length.value_or(0);

@@ -17,7 +17,7 @@ class Gate {
   enum class Finding : std::uint8_t {
     Nothing,  // no byte of the next request has arrived
     Begun,    // the head is not whole
-    Later,    // the head arrives in small pieces; call look() again at next_look_at()
+    Later,    // the head arrives in small pieces; call check_bytes() again at next_check()
     Whole,    // libmicrohttpd may read it
     Refused,  // head().refusal() says why
   };
@@ -28,15 +28,15 @@ class Gate {
   /// A request has ended. Waits for the next head, unless that was checked together with the previous one
   /// because the client does not wait for answers.
   void on_request_end();
-  /// Bytes have arrived since the last look().
-  void bytes_came() { has_new_bytes_ = true; }
+  /// Bytes have arrived since the last check_bytes().
+  void on_bytes() { has_new_bytes_ = true; }
   bool has_new_bytes() const { return has_new_bytes_; }
   bool is_waiting() const { return stage_ == Stage::Waiting; }
   /// True if the first bytes were not checked yet, or libmicrohttpd has not yet read a valid head.
   bool has_unseen() const;
   /// Checks the bytes in the socket. `at_once`: do not wait for more pieces.
-  Finding look(loop::Instant now, bool at_once);
-  loop::Instant next_look_at() const { return again_at_; }
+  Finding check_bytes(loop::Instant now, bool at_once);
+  loop::Instant next_check() const { return again_at_; }
   /// The present head.
   const HeadChecker& head() const { return head_; }
 
@@ -74,18 +74,18 @@ class Gate {
 
  private:
   enum class Stage : std::uint8_t { Waiting, Open, Entered, Refused };
-  struct Sound {
+  struct ValidHead {
     std::string head;
     Framing framing;
   };
-  void take_sound_heads(std::string_view bytes);
+  void pop_valid_heads(std::string_view bytes);
 
   int fd_;
   Stage stage_ = Stage::Waiting;
   bool has_new_bytes_ = false;
   HeadChecker head_;
-  std::vector<Sound> sound_;  // requests whose heads libmicrohttpd may read
-  std::size_t next_ = 0;      // the next one of sound_
+  std::vector<ValidHead> sound_;  // requests whose heads libmicrohttpd may read
+  std::size_t next_ = 0;          // the next one of sound_
   Framing framing_;
   std::string head_text_;
   std::size_t looked_at_ = 0;  // checked bytes of the head

@@ -172,7 +172,7 @@ std::string_view Head::query(std::string_view name) const {
 
 std::string_view Head::header(std::string_view name) const {
   for (const FieldLine& field : fields_) {
-    if (icd::same_but_for_case(field.name, name)) return field.value;
+    if (icd::equals_ignoring_case(field.name, name)) return field.value;
   }
   return {};
 }

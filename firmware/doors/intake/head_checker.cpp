@@ -39,7 +39,7 @@ HeadChecker::Place HeadChecker::place_of(std::string_view so_far, std::string_vi
           .size = part.size()};
 }
 
-HeadChecker::Verdict HeadChecker::look(std::string_view so_far) {
+HeadChecker::Verdict HeadChecker::check(std::string_view so_far) {
   while (verdict_ == Verdict::More) {
     const auto end = std::min(so_far.find('\n', looked_at_), so_far.size());
     if (end >= kMostBytes) {
@@ -97,7 +97,7 @@ void HeadChecker::target(std::string_view so_far, std::string_view method, std::
   count(count_of(target, '&'));
   if (!is_target_text(target)) {
     refuse("request target: must have no control characters");
-  } else if (icd::same_but_for_case(target.substr(0, kScheme.size()), kScheme)) {
+  } else if (icd::equals_ignoring_case(target.substr(0, kScheme.size()), kScheme)) {
     const std::string_view after = target.substr(kScheme.size());
     const std::string_view authority = after.substr(0, after.find_first_of("/?#"));
     authority_ = place_of(so_far, authority);
@@ -110,13 +110,13 @@ void HeadChecker::field(std::string_view so_far, std::string_view line) {
   const auto field = parse_field_line(line);
   if (!field) return refuse(field.error());
   count(1);
-  if (icd::same_but_for_case(field->name, "Host")) {
+  if (icd::equals_ignoring_case(field->name, "Host")) {
     host(so_far, field->value);
-  } else if (icd::same_but_for_case(field->name, "Content-Length")) {
+  } else if (icd::equals_ignoring_case(field->name, "Content-Length")) {
     content_length(field->value);
-  } else if (icd::same_but_for_case(field->name, "Transfer-Encoding")) {
+  } else if (icd::equals_ignoring_case(field->name, "Transfer-Encoding")) {
     transfer_encoding(field->value);
-  } else if (icd::same_but_for_case(field->name, "Cookie")) {
+  } else if (icd::equals_ignoring_case(field->name, "Cookie")) {
     cookie(field->value);
   } else {
     check_single(so_far, *field);
@@ -130,7 +130,7 @@ void HeadChecker::check_single(std::string_view so_far, const FieldLine& field) 
   static constexpr std::array<std::string_view, 4> kNames = {"Content-Type", "Authorization", "Origin",
                                                              "Content-Encoding"};
   const auto* const name = std::ranges::find_if(
-      kNames, [&](std::string_view each) { return icd::same_but_for_case(each, field.name); });
+      kNames, [&](std::string_view each) { return icd::equals_ignoring_case(each, field.name); });
   if (name == kNames.end()) return;
   auto& before = single_[static_cast<std::size_t>(name - kNames.begin())];
   if (!before) {
@@ -162,7 +162,7 @@ void HeadChecker::content_length(std::string_view value) {
 
 /// RFC 9112 6.1, 7
 void HeadChecker::transfer_encoding(std::string_view value) {
-  if (std::exchange(has_coding_, true) || !icd::same_but_for_case(value, "chunked")) {
+  if (std::exchange(has_coding_, true) || !icd::equals_ignoring_case(value, "chunked")) {
     refuse("Transfer-Encoding: expected only chunked");
   }
 }
@@ -180,7 +180,7 @@ void HeadChecker::end(std::string_view so_far) {
   const auto text = [&](const Place& place) { return so_far.substr(place.at, place.size); };
   if (!host_ && !is_version_1_0_) {
     refuse("Host: missing");  // RFC 9112 3.2
-  } else if (authority_ && (!host_ || !icd::same_but_for_case(text(*authority_), text(*host_)))) {
+  } else if (authority_ && (!host_ || !icd::equals_ignoring_case(text(*authority_), text(*host_)))) {
     refuse("request target: its address differs from Host");  // RFC 9112 3.2.2
   } else if (has_coding_ && has_length_) {
     refuse("Content-Length: not allowed with Transfer-Encoding");  // RFC 9112 6.3

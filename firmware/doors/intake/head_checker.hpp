@@ -31,7 +31,7 @@ class HeadChecker {
 
   /// `so_far`: all bytes of the head that have arrived, the earlier ones included. More: the head is not
   /// whole. Ignores bytes after a whole head.
-  Verdict look(std::string_view so_far);
+  Verdict check(std::string_view so_far);
 
   /// For Whole: the bytes of the head, and how its body ends.
   std::size_t size() const { return looked_at_; }

@@ -55,7 +55,7 @@ icd::Checked<codec::BodyKind> kind_of(icd::Uri uri, const RequestHead& head) {
 icd::Checked<bool> resubmits_of(const RequestHead& head) {
   const std::string_view word = head.header("Adit-Resubmit");
   if (word.empty()) return false;
-  if (icd::same_but_for_case(word, "yes")) return true;
+  if (icd::equals_ignoring_case(word, "yes")) return true;
   return icd::unprocessable("Adit-Resubmit: expected yes or no such header, got ", icd::quote_text(word));
 }
 
@@ -74,7 +74,7 @@ icd::Checked<void> check_origin(const RequestHead& head, const std::vector<std::
                       icd::quote_text(origin), ", got ", icd::quote_text(host)));
   }
   const bool is_listed = std::ranges::any_of(
-      origins, [origin](const std::string& each) { return icd::same_but_for_case(each, origin); });
+      origins, [origin](const std::string& each) { return icd::equals_ignoring_case(each, origin); });
   if (is_listed || access::is_same_origin(origin, host, head.is_secure())) return {};
   return needs_token(icd::sentence("Origin: a page of ", icd::quote_text(origin),
                                    " needs the team's token, or an entry in the setting team.origins"),
@@ -93,7 +93,7 @@ std::string describe_credentials(std::string_view authorization) {
   if (!icd::token_in(authorization).empty()) return "";
   const std::string_view first = authorization.substr(0, authorization.find(' '));
   for (const std::string_view scheme : {"Basic", "Digest", "Token"}) {
-    if (icd::same_but_for_case(first, scheme)) return icd::sentence(", got ", scheme);
+    if (icd::equals_ignoring_case(first, scheme)) return icd::sentence(", got ", scheme);
   }
   return ", got no bearer token";
 }
@@ -134,7 +134,7 @@ class PreflightResponder final : public PassingResponder {
  public:
   PreflightResponder(std::shared_ptr<Responder> responder, const RequestHead& head)
       : PassingResponder(std::move(responder)), preflight_(preflight_answer("GET, POST", head)) {
-    let_pages_read(preflight_);
+    allow_any_origin(preflight_);
   }
   void answer(Answer answer) override {
     inner().answer(answer.status == icd::Status::NotFound ? std::move(preflight_) : std::move(answer));

@@ -106,7 +106,7 @@ std::expected<void, std::string> adopt_listen_socket(int fd, const Listen& liste
   return {};
 }
 
-std::expected<Bound, std::string> bound_at(int fd) {
+std::expected<ListenAddress, std::string> bound_at(int fd) {
   static const std::string kExpected = "expected a listening TCP socket over IPv4 or IPv6, got ";
   const auto type = get(fd, SO_TYPE), domain = get(fd, SO_DOMAIN);
   if (!type) return std::unexpected(kExpected + "no socket");
@@ -120,19 +120,19 @@ std::expected<Bound, std::string> bound_at(int fd) {
   int only_v6 = 0;
   size = sizeof only_v6;
   if (*domain == AF_INET6) ::getsockopt(fd, IPPROTO_IPV6, IPV6_V6ONLY, &only_v6, &size);
-  return Bound{.address = local_address(fd),
-               .port = port_of(fd),
-               .interface = interface.data(),
-               .only_v6 = only_v6 != 0};
+  return ListenAddress{.address = local_address(fd),
+                       .port = port_of(fd),
+                       .interface = interface.data(),
+                       .only_v6 = only_v6 != 0};
 }
 
-bool is_deaf(int fd) {
+bool is_orphaned(int fd) {
   std::array<char, IFNAMSIZ> interface{};
   socklen_t size = interface.size();
   return ::getsockopt(fd, SOL_SOCKET, SO_BINDTODEVICE, interface.data(), &size) != 0 && errno == ENODEV;
 }
 
-bool covers(const Bound& bound, const Listen& listen) {
+bool covers(const ListenAddress& bound, const Listen& listen) {
   if (bound.port != listen.port) return false;
   // A socket that is bound to no interface would also answer on others.
   if (!listen.interface.empty() && bound.interface != listen.interface) return false;

@@ -29,7 +29,7 @@ std::expected<loop::FileDescriptor, std::string> open_listen_socket(const Listen
 std::expected<void, std::string> adopt_listen_socket(int fd, const Listen& listen);
 
 /// The address at which a socket listens.
-struct Bound {
+struct ListenAddress {
   std::string address = "";  // "::": each IPv6 address, and each IPv4 address unless only_v6
   std::uint16_t port = 0;
   std::string interface = "";  // "": each interface
@@ -37,14 +37,14 @@ struct Bound {
 };
 
 /// The error says why `fd` is no listening TCP socket over IPv4 or IPv6.
-std::expected<Bound, std::string> bound_at(int fd);
+std::expected<ListenAddress, std::string> bound_at(int fd);
 
 /// True if the socket is bound to an interface that was removed. Clients cannot reach it, even if a new
 /// interface has the same name.
-bool is_deaf(int fd);
+bool is_orphaned(int fd);
 
 /// True if connections to `listen` reach the socket. If `listen` names no interface, the socket may have any.
-bool covers(const Bound& bound, const Listen& listen);
+bool covers(const ListenAddress& bound, const Listen& listen);
 
 /// The port of a bound socket; 0 on an error.
 std::uint16_t port_of(int fd);

@@ -62,7 +62,7 @@ class MessageHandler {
 
   /// Records that a part of a message was dropped, and why. accept() follows. The sender does not learn of
   /// it.
-  virtual void left_out(icd::Uri uri, const Sender& sender, const std::string& why) = 0;
+  virtual void record_dropped(icd::Uri uri, const Sender& sender, const std::string& why) = 0;
   /// Records that a message was rejected. The sender has the answer.
   virtual void on_rejected(icd::Uri uri, const Sender& sender, const icd::Refusal& refusal) = 0;
 };

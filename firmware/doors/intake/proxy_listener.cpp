@@ -78,12 +78,12 @@ void ProxyListener::accept_some() {
     const auto last = std::prev(waiting_.end());
     // Edge-triggered, because the bytes of an incomplete header stay in the socket.
     last->arrivals = loop_.watch(last->connection.get(), EPOLLIN | EPOLLRDHUP | EPOLLET,
-                                 [this, last](std::uint32_t) { look_at(last); });
+                                 [this, last](std::uint32_t) { read_header(last); });
     if (waiting_.size() == 1) late_.call_at(last->until);
   }
 }
 
-void ProxyListener::look_at(std::list<Waiting>::iterator waiting) {
+void ProxyListener::read_header(std::list<PendingConnection>::iterator waiting) {
   std::array<char, ProxyHeader::kMostBytes> bytes;  // NOLINT(cppcoreguidelines-pro-type-member-init)
   const int fd = waiting->connection.get();
   const ssize_t size = ::recv(fd, bytes.data(), bytes.size(), MSG_PEEK);
@@ -91,7 +91,7 @@ void ProxyListener::look_at(std::list<Waiting>::iterator waiting) {
   std::expected<ProxyHeader, ProxyHeader::Missing> header(std::unexpect, ProxyHeader::Missing::Refused);
   if (size > 0) header = ProxyHeader::parse({bytes.data(), static_cast<std::size_t>(size)});
   if (!header && header.error() == ProxyHeader::Missing::More) return;
-  Waiting done = std::move(*waiting);
+  PendingConnection done = std::move(*waiting);
   waiting_.erase(waiting);
   done.arrivals = {};
   if (header && ::recv(fd, bytes.data(), header->size, 0) == static_cast<ssize_t>(header->size))
@@ -99,7 +99,7 @@ void ProxyListener::look_at(std::list<Waiting>::iterator waiting) {
 }
 
 void ProxyListener::close_late() {
-  std::erase_if(waiting_, [now = loop_.now()](const Waiting& each) { return each.until <= now; });
+  std::erase_if(waiting_, [now = loop_.now()](const PendingConnection& each) { return each.until <= now; });
   if (!waiting_.empty()) late_.call_at(waiting_.front().until);
 }
 

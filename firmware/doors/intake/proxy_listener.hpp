@@ -42,21 +42,21 @@ class ProxyListener {
                 Admit admit);
 
  private:
-  struct Waiting {
+  struct PendingConnection {
     loop::FileDescriptor connection;
     loop::Instant until;
     loop::Source arrivals;
   };
 
   void accept_some();
-  void look_at(std::list<Waiting>::iterator waiting);
+  void read_header(std::list<PendingConnection>::iterator waiting);
   void close_late();
 
   loop::Loop& loop_;
   const std::chrono::milliseconds within_;
   const Admit admit_;
   loop::FileDescriptor listening_;
-  std::list<Waiting> waiting_;  // the oldest first
+  std::list<PendingConnection> waiting_;  // the oldest first
   loop::Source connects_, late_;
 };
 

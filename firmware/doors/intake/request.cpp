@@ -17,7 +17,7 @@ namespace adit::intake {
 
 ChunkReader::State ChunkReader::feed(std::string_view bytes, std::string& data) {
   while (state_ == State::More && !bytes.empty()) {
-    bytes.remove_prefix(in_ == In::Data ? take_data(bytes, data) : take_line(bytes));
+    bytes.remove_prefix(in_ == Section::Data ? take_data(bytes, data) : take_line(bytes));
   }
   return state_;
 }
@@ -26,7 +26,7 @@ std::size_t ChunkReader::take_data(std::string_view bytes, std::string& data) {
   const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(bytes.size(), left_));
   data += bytes.substr(0, size);
   left_ -= size;
-  if (left_ == 0) in_ = In::AfterData;
+  if (left_ == 0) in_ = Section::AfterData;
   return size;
 }
 
@@ -35,7 +35,7 @@ std::size_t ChunkReader::take_line(std::string_view bytes) {
   line_ += bytes.substr(0, end);
   if (line_.size() > kMostLine) {
     refuse("chunked body: a line is longer than 4096 bytes");
-  } else if (in_ == In::AfterData && !std::string_view("\r").starts_with(line_)) {
+  } else if (in_ == Section::AfterData && !std::string_view("\r").starts_with(line_)) {
     refuse("chunked body: a chunk is longer than its size");
   } else if (end < bytes.size()) {
     end_line();
@@ -47,9 +47,9 @@ std::size_t ChunkReader::take_line(std::string_view bytes) {
 void ChunkReader::end_line() {
   if (!line_.ends_with('\r')) return refuse("chunked body: each line must end in CRLF");
   line_.pop_back();
-  if (in_ == In::AfterData) {
-    in_ = In::Size;
-  } else if (in_ == In::Size) {
+  if (in_ == Section::AfterData) {
+    in_ = Section::Size;
+  } else if (in_ == Section::Size) {
     size_line();
   } else {
     trailer_line();
@@ -68,7 +68,7 @@ void ChunkReader::size_line() {
     refuse("chunked body: expected the size of a chunk in hexadecimal digits");
   } else {
     left_ = *size;
-    in_ = left_ > 0 ? In::Data : In::Trailers;
+    in_ = left_ > 0 ? Section::Data : Section::Trailers;
   }
 }
 
@@ -96,7 +96,7 @@ constexpr std::size_t kBlock = 16 * 1024;
 }  // namespace
 
 bool ReplyStream::send(std::string_view bytes) {
-  if (client_ == nullptr || client_->hung_up()) return false;
+  if (client_ == nullptr || client_->has_hung_up()) return false;
   if (waiting() + bytes.size() > kLag) {
     client_->cut();
     detach();
@@ -123,7 +123,7 @@ void ReplyStream::end() {
 }
 
 ssize_t ReplyStream::read(char* into, std::size_t most) {
-  if (client_ == nullptr || client_->hung_up()) return MHD_CONTENT_READER_END_WITH_ERROR;
+  if (client_ == nullptr || client_->has_hung_up()) return MHD_CONTENT_READER_END_WITH_ERROR;
   if (pieces_.empty()) {
     if (ended_) return MHD_CONTENT_READER_END_OF_STREAM;
     client_->suspend();
@@ -214,8 +214,8 @@ void Request::open(Handler& handler) {
   } else {
     client_->deadline().expect_body();
     client_->gate().acknowledge_head();
-    if (chunks_ && icd::same_but_for_case(head_->header("Expect"), "100-continue")) {
-      client_->say("HTTP/1.1 100 Continue\r\n\r\n");
+    if (chunks_ && icd::equals_ignoring_case(head_->header("Expect"), "100-continue")) {
+      client_->write_text("HTTP/1.1 100 Continue\r\n\r\n");
     }
   }
 }
@@ -230,30 +230,30 @@ void Request::refuse_for_room(std::string_view sentence) {
   refuse(*answer_);
 }
 
-Next Request::body(std::span<const std::uint8_t> piece) {
+ConnectionAction Request::body(std::span<const std::uint8_t> piece) {
   if (stage_ == Stage::Refusing) {
     return discard_body(piece.size());
   }
   if (left_) *left_ -= std::min<std::uint64_t>(piece.size(), *left_);
-  if (is_answered()) return Next::GoOn;  // the rest is read and ignored
+  if (is_answered()) return ConnectionAction::KeepOpen;  // the rest is read and ignored
   if (chunks_) {
     consume_chunks(piece);
   } else {
     consume(piece);
   }
-  return Next::GoOn;
+  return ConnectionAction::KeepOpen;
 }
 
 bool Request::has_unended_body() const {
   return chunks_ && chunks_->state() == ChunkReader::State::Whole && stage_ == Stage::Body && !is_answered();
 }
 
-Next Request::discard_body(std::size_t bytes) {
+ConnectionAction Request::discard_body(std::size_t bytes) {
   if (is_answered()) sink_.reset();  // frees its data, because discarding may take long
   thrown_away_ += bytes;
-  client_->deadline().body_came(bytes);
+  client_->deadline().on_body(bytes);
   const bool is_enough = !client_->deadline().is_authenticated() && thrown_away_ > kLingerUnauthenticated;
-  return is_enough ? Next::Close : Next::GoOn;
+  return is_enough ? ConnectionAction::Close : ConnectionAction::KeepOpen;
 }
 
 void Request::consume_chunks(std::span<const std::uint8_t> piece) {
@@ -274,15 +274,15 @@ void Request::consume(std::span<const std::uint8_t> piece) {
   if (is_answered()) {
     send_early_answer();
   } else if (more || resumed_) {
-    client_->deadline().body_came(piece.size());
+    client_->deadline().on_body(piece.size());
   } else {
     client_->deadline().expect_nothing();
     client_->suspend();
   }
 }
 
-Next Request::end() {
-  if (stage_ == Stage::Refusing) return Next::Close;
+ConnectionAction Request::end() {
+  if (stage_ == Stage::Refusing) return ConnectionAction::Close;
   if (stage_ == Stage::Body) {
     stage_ = Stage::Whole;
     client_->deadline().expect_nothing();
@@ -293,9 +293,9 @@ Next Request::end() {
     }
   }
   if (is_answered()) return hand_over();
-  if (client_->hung_up()) return Next::Close;
+  if (client_->has_hung_up()) return ConnectionAction::Close;
   client_->suspend();
-  return Next::GoOn;
+  return ConnectionAction::KeepOpen;
 }
 
 void Request::send_early_answer() {
@@ -312,12 +312,12 @@ void Request::send_early_answer() {
 void Request::open_to_pages(Answer& answer) const {
   if (!head_) return;
   const bool is_nothing = answer.status == icd::Status::NotFound && !head_->path().starts_with(kApiPaths);
-  if (is_nothing || icd::uri_of(head_->path())) let_pages_read(answer);
+  if (is_nothing || icd::uri_of(head_->path())) allow_any_origin(answer);
 }
 
 void Request::refuse(Answer answer) {
   open_to_pages(answer);
-  client_->say_last(last_answer_text(answer, !is_head_));
+  client_->write_last(last_answer_text(answer, !is_head_));
   stage_ = Stage::Refusing;
   if (has_body_) {
     client_->deadline().expect_body();
@@ -327,47 +327,47 @@ void Request::refuse(Answer answer) {
   client_->resume();
 }
 
-Next Request::hand_over() {
+ConnectionAction Request::hand_over() {
   if (chunks_) {  // libmicrohttpd does not know of the request
     send_early_answer();
-    return Next::GoOn;
+    return ConnectionAction::KeepOpen;
   }
   if (!stream_) open_to_pages(*answer_);
   MHD_Response* response = stream_ ? ReplyStream::make_response(stream_) : make_response(*answer_);
-  if (response == nullptr) return Next::Close;
+  if (response == nullptr) return ConnectionAction::Close;
   const unsigned status = stream_ ? MHD_HTTP_OK : static_cast<unsigned>(answer_->status);
   const Gate::Traffic traffic = client_->gate().traffic();
   is_last_ = client_->gate().is_passed_by(traffic.received);
   if (is_last_) MHD_add_response_header(response, MHD_HTTP_HEADER_CONNECTION, "close");
   const MHD_Result queued = MHD_queue_response(client_->connection(), status, response);
   MHD_destroy_response(response);
-  if (queued != MHD_YES) return Next::Close;
+  if (queued != MHD_YES) return ConnectionAction::Close;
   stage_ = Stage::Answering;
   if (stream_) {
     client_->expect_stream();
   } else {
     client_->deadline().expect_steady_reading(traffic.taken);
   }
-  return Next::GoOn;
+  return ConnectionAction::KeepOpen;
 }
 
 void Request::on_late() {
   if (stage_ == Stage::Body && answer_) return refuse(*answer_);
-  if (stage_ != Stage::Refusing) client_->engine().tell(Ended::Slow, client_->peer());
+  if (stage_ != Stage::Refusing) client_->engine().on_closed(CloseReason::Slow, client_->peer());
   if (stage_ == Stage::Body) {
     refuse(error_answer(icd::Status::RequestTimeout, "the body of the request took too long"));
   }
   client_->cut();
 }
 
-Next Request::on_failed() {
+ConnectionAction Request::on_failed() {
   in_call_ = false;
   const bool whole = stage_ == Stage::Whole;
   if (stream_ || stage_ == Stage::Answering || stage_ == Stage::Refusing || stage_ == Stage::Over)
-    return Next::Close;
+    return ConnectionAction::Close;
   if (!answer_) answer_ = failure();
   refuse(*answer_);
-  return whole ? Next::Close : Next::GoOn;
+  return whole ? ConnectionAction::Close : ConnectionAction::KeepOpen;
 }
 
 void Request::on_completed() {
@@ -381,14 +381,14 @@ void Request::on_completed() {
 }
 
 void Request::answer(Answer answer) {
-  if (is_answered() || client_gone()) return;
+  if (is_answered() || is_client_gone()) return;
   answer_ = std::move(answer);
   on_answer();
 }
 
 std::shared_ptr<Stream> Request::stream(std::string_view content_type) {
   auto stream = std::make_shared<ReplyStream>();
-  if (!is_answered() && !client_gone()) {
+  if (!is_answered() && !is_client_gone()) {
     stream->attach(*client_, content_type);
     stream_ = stream;
     on_answer();
@@ -406,8 +406,8 @@ void Request::on_answer() {
   }
 }
 
-bool Request::client_gone() const {
-  return stage_ == Stage::Over || client_->hung_up() || (stage_ == Stage::Refusing && !is_answered());
+bool Request::is_client_gone() const {
+  return stage_ == Stage::Over || client_->has_hung_up() || (stage_ == Stage::Refusing && !is_answered());
 }
 
 void Request::resume() {

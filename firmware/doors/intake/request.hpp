@@ -36,7 +36,7 @@ class ChunkReader {
   std::string_view trouble() const { return trouble_; }
 
  private:
-  enum class In : std::uint8_t { Size, Data, AfterData, Trailers };
+  enum class Section : std::uint8_t { Size, Data, AfterData, Trailers };
 
   std::size_t take_data(std::string_view bytes, std::string& data);
   std::size_t take_line(std::string_view bytes);
@@ -46,7 +46,7 @@ class ChunkReader {
   void refuse(std::string_view trouble);
 
   State state_ = State::More;
-  In in_ = In::Size;
+  Section in_ = Section::Size;
   std::uint64_t left_ = 0;  // bytes of the chunk that have not arrived
   std::string line_;        // the part of the line that has arrived
   std::size_t trailers_ = 0;
@@ -84,7 +84,7 @@ class ReplyStream final : public Stream {
 };
 
 /// What happens to the connection after a step of the request.
-enum class Next : std::uint8_t { GoOn, Close };
+enum class ConnectionAction : std::uint8_t { KeepOpen, Close };
 
 /// One request, from its head to the end of its answer. libmicrohttpd's callbacks drive it on one side, or
 /// Client if its body is chunked, and holders of its Responder or FlowControl on the other. It outlives its
@@ -102,11 +102,11 @@ class Request final : public Responder, public FlowControl, public std::enable_s
   /// Answers 503 without a handler and closes the connection.
   void refuse_for_room(std::string_view sentence);
   /// A piece of the body; of a chunked body with its chunk headers.
-  Next body(std::span<const std::uint8_t> piece);
+  ConnectionAction body(std::span<const std::uint8_t> piece);
   /// True if a chunked body is whole, and end() was not called.
   bool has_unended_body() const;
   /// The body is whole. Called again each time the connection is resumed.
-  Next end();
+  ConnectionAction end();
   void on_late();
   /// True while more of the head or the body is to come.
   bool is_sending() const {
@@ -118,14 +118,14 @@ class Request final : public Responder, public FlowControl, public std::enable_s
   bool is_unanswered() const { return !is_answered() && (stage_ == Stage::Body || stage_ == Stage::Whole); }
   /// A callback of the handler threw. Answers 500, unless an answer was being sent, and closes the
   /// connection.
-  Next on_failed();
+  ConnectionAction on_failed();
   /// libmicrohttpd has finished the request, in any way.
   void on_completed();
 
   /// The handler's side.
   void answer(Answer answer) override;
   std::shared_ptr<Stream> stream(std::string_view content_type) override;
-  bool client_gone() const override;
+  bool is_client_gone() const override;
   void resume() override;
 
  private:
@@ -141,14 +141,14 @@ class Request final : public Responder, public FlowControl, public std::enable_s
   bool is_answered() const { return answer_ || stream_; }
   void consume(std::span<const std::uint8_t> piece);
   /// Discards a piece of a body that was answered before it was whole.
-  Next discard_body(std::size_t bytes);
+  ConnectionAction discard_body(std::size_t bytes);
   void consume_chunks(std::span<const std::uint8_t> piece);
   /// Sends an answer that came before the body was whole.
   void send_early_answer();
   void refuse(Answer answer);
   /// Lets pages read an answer of the ICD's URIs, and that there is no such URI. Not the box's files and API.
   void open_to_pages(Answer& answer) const;
-  Next hand_over();
+  ConnectionAction hand_over();
   void on_answer();
 
   Client* client_;  // null once over

@@ -41,7 +41,7 @@ class MhdServer final : public Server, public Engine {
         listen_(std::move(listen)),
         shares_(Shares::split(listen_.connections, listen_.connections_per_address)),
         turnstile_(loop, handler, listen_.guesses == nullptr ? own_guesses_ : *listen_.guesses, listen_.late,
-                   [this](Ended why, const std::string& address) { tell(why, address); }) {}
+                   [this](CloseReason why, const std::string& address) { on_closed(why, address); }) {}
   MhdServer(const MhdServer&) = delete;
   MhdServer& operator=(const MhdServer&) = delete;
   ~MhdServer() override;
@@ -55,8 +55,8 @@ class MhdServer final : public Server, public Engine {
   loop::Instant now() const override { return loop_.now(); }
   const Listen& listen() const override { return listen_; }
   void schedule_run() override;
-  void look_at(loop::Instant when) override;
-  void tell(Ended why, const std::string& address) override {
+  void schedule_check(loop::Instant when) override;
+  void on_closed(CloseReason why, const std::string& address) override {
     if (listen_.on_ended) listen_.on_ended(why, address);
   }
   void schedule_hold_back(std::uint64_t number) override { to_hold_back_.push_back(number); }
@@ -68,26 +68,26 @@ class MhdServer final : public Server, public Engine {
                                  void** request_cls);
   static void request_completed(void* cls, MHD_Connection* connection, void** request_cls,
                                 MHD_RequestTerminationCode why);
-  static void connection_changed(void* cls, MHD_Connection* connection, void** client_cls,
-                                 MHD_ConnectionNotificationCode what);
+  static void on_connection_change(void* cls, MHD_Connection* connection, void** client_cls,
+                                   MHD_ConnectionNotificationCode what);
   /// parse_target() decodes targets, so libmicrohttpd must not.
   static std::size_t leave_escaped(void*, MHD_Connection*, char* text) {
     return std::char_traits<char>::length(text);
   }
-  static void say_nothing(void*, const char*, va_list) {}
+  static void discard_log(void*, const char*, va_list) {}
 
-  Next hear(Client& client, std::string_view upload, void** request_cls);
+  ConnectionAction serve_request(Client& client, std::string_view upload, void** request_cls);
   /// Gives libmicrohttpd a connection that stunnel passed on.
   void add(loop::FileDescriptor connection, ProxyHeader header);
   void on_connected(MHD_Connection* connection, void** client_cls);
-  std::vector<Held> held_but(const Client* one) const;
+  std::vector<ConnectionInfo> held_connections(const Client* one) const;
   /// Closes unauthenticated connections above their share.
   void close_unauthenticated();
   /// For a request with a right token. False: refuse the request.
   bool make_room_for(Client& client);
   void run();
-  void hold_back();
-  void look_at_deadlines();
+  void pause_clients();
+  void check_deadlines();
 
   loop::Loop& loop_;
   const Listen listen_;
@@ -118,11 +118,11 @@ std::expected<void, std::string> MhdServer::start(loop::FileDescriptor given) {
   const unsigned flags = MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME | MHD_USE_ERROR_LOG;
   daemon_ = MHD_start_daemon(
       by_tls ? flags | MHD_USE_NO_LISTEN_SOCKET : flags, 0, nullptr, nullptr, &MhdServer::request_came, this,
-      MHD_OPTION_EXTERNAL_LOGGER, &MhdServer::say_nothing, nullptr, MHD_OPTION_CONNECTION_LIMIT,
+      MHD_OPTION_EXTERNAL_LOGGER, &MhdServer::discard_log, nullptr, MHD_OPTION_CONNECTION_LIMIT,
       shares_.unauthenticated + shares_.known + kOnTheirWayOut, MHD_OPTION_CONNECTION_TIMEOUT, 0u,
       MHD_OPTION_CONNECTION_MEMORY_LIMIT, kConnectionMemory, MHD_OPTION_NOTIFY_CONNECTION,
-      &MhdServer::connection_changed, this, MHD_OPTION_NOTIFY_COMPLETED, &MhdServer::request_completed, this,
-      MHD_OPTION_UNESCAPE_CALLBACK, &MhdServer::leave_escaped, nullptr,
+      &MhdServer::on_connection_change, this, MHD_OPTION_NOTIFY_COMPLETED, &MhdServer::request_completed,
+      this, MHD_OPTION_UNESCAPE_CALLBACK, &MhdServer::leave_escaped, nullptr,
       by_tls ? MHD_OPTION_END : MHD_OPTION_LISTEN_SOCKET, socket.get(), MHD_OPTION_END);
   if (daemon_ == nullptr) return std::unexpected("the HTTP server did not start");
   if (by_tls) {
@@ -133,7 +133,7 @@ std::expected<void, std::string> MhdServer::start(loop::FileDescriptor given) {
   } else {
     accepts_ = accept_instead(socket.get(), [this](int fd, const sockaddr* peer, unsigned size) {
       MHD_add_connection(daemon_, fd, peer, size);
-      hold_back();
+      pause_clients();
     });
     socket.release();  // NOLINT(bugprone-unused-return-value): libmicrohttpd's, until stop_listening()
   }
@@ -142,7 +142,7 @@ std::expected<void, std::string> MhdServer::start(loop::FileDescriptor given) {
   const MHD_DaemonInfo* info = MHD_get_daemon_info(daemon_, MHD_DAEMON_INFO_EPOLL_FD);
   if (info == nullptr || info->epoll_fd < 0)
     return std::unexpected("the HTTP server has no epoll descriptor");
-  deadline_timer_ = loop_.timer([this] { look_at_deadlines(); });
+  deadline_timer_ = loop_.timer([this] { check_deadlines(); });
   readable_ = loop_.watch(info->epoll_fd, EPOLLIN, [this](std::uint32_t) { run(); });
   return {};
 }
@@ -174,7 +174,7 @@ void MhdServer::add(loop::FileDescriptor connection, ProxyHeader header) {
   socklen_t size = sizeof peer;
   ::getpeername(fd, reinterpret_cast<sockaddr*>(&peer), &size);
   MHD_add_connection(daemon_, connection.release(), reinterpret_cast<const sockaddr*>(&peer), size);
-  hold_back();
+  pause_clients();
   schedule_run();
 }
 
@@ -191,7 +191,7 @@ void MhdServer::run() {
   bool has_more = true;
   for (int left = kReads; has_more && left > 0; --left) {
     MHD_run(daemon_);
-    hold_back();
+    pause_clients();
     MHD_UNSIGNED_LONG_LONG wait_ms = 0;
     has_more = MHD_get_timeout(daemon_, &wait_ms) == MHD_YES && wait_ms == 0;
   }
@@ -200,19 +200,19 @@ void MhdServer::run() {
 }
 
 /// For connections that libmicrohttpd has added or answered. It has not read from them since.
-void MhdServer::hold_back() {
+void MhdServer::pause_clients() {
   for (const std::uint64_t number : std::exchange(to_hold_back_, {})) {
-    if (const auto found = clients_.find(number); found != clients_.end()) found->second->hold_back();
+    if (const auto found = clients_.find(number); found != clients_.end()) found->second->pause_reading();
   }
 }
 
-void MhdServer::look_at(loop::Instant when) {
+void MhdServer::schedule_check(loop::Instant when) {
   if (stopping_ || when >= look_due_) return;
   look_due_ = when;
   deadline_timer_.call_at(when);
 }
 
-void MhdServer::look_at_deadlines() {
+void MhdServer::check_deadlines() {
   look_due_ = loop::Instant::max();
   const loop::Instant now = loop_.now();
   for (const auto& [number, client] : clients_) {
@@ -220,7 +220,7 @@ void MhdServer::look_at_deadlines() {
   }
   loop::Instant next = loop::Instant::max();
   for (const auto& [number, client] : clients_) next = std::min(next, client->deadline().at());
-  if (next != loop::Instant::max()) look_at(next);
+  if (next != loop::Instant::max()) schedule_check(next);
 }
 
 void MhdServer::on_connected(MHD_Connection* connection, void** client_cls) {
@@ -244,8 +244,8 @@ std::size_t MhdServer::unauthenticated_connections() const {
       clients_, [](const auto& each) { return !each.second->deadline().is_authenticated(); }));
 }
 
-std::vector<Held> MhdServer::held_but(const Client* one) const {
-  std::vector<Held> all;
+std::vector<ConnectionInfo> MhdServer::held_connections(const Client* one) const {
+  std::vector<ConnectionInfo> all;
   for (const auto& [number, client] : clients_) {
     if (client.get() == one) continue;
     if (const auto held = client->held_share()) all.push_back(*held);
@@ -255,12 +255,12 @@ std::vector<Held> MhdServer::held_but(const Client* one) const {
 
 void MhdServer::close_unauthenticated() {
   if (unauthenticated_connections() <= shares_.unauthenticated) return;
-  while (const auto number = unauthenticated_to_close(held_but(nullptr), shares_))
+  while (const auto number = unauthenticated_to_close(held_connections(nullptr), shares_))
     clients_.at(*number)->give_way();
 }
 
 bool MhdServer::make_room_for(Client& client) {
-  const Room room = room_for(client.peer(), held_but(&client), shares_);
+  const Room room = room_for(client.peer(), held_connections(&client), shares_);
   if (room.gives_way) clients_.at(*room.gives_way)->give_way();
   return room.is_there;
 }
@@ -280,7 +280,7 @@ void MhdServer::begin_request(Client& client) {
     const bool has_room = !known || client.deadline().is_authenticated() || make_room_for(client);
     client.deadline().set_authenticated(known && has_room);
     if (has_room) return request->open(turnstile_);
-    tell(Ended::NoRoom, client.peer());
+    on_closed(CloseReason::NoRoom, client.peer());
     request->refuse_for_room("too many requests at once, from this address or in total; try again");
   }
 }
@@ -297,16 +297,17 @@ MHD_Result MhdServer::request_came(void* cls, MHD_Connection* connection, const 
   Client* client = client_of(connection);
   if (client == nullptr || server.stopping_) return MHD_NO;
   const std::string_view piece(upload, std::exchange(*upload_size, 0));
-  const Next next = client->run_guarded([&] { return server.hear(*client, piece, request_cls); });
-  return next == Next::Close ? MHD_NO : MHD_YES;
+  const ConnectionAction next =
+      client->run_guarded([&] { return server.serve_request(*client, piece, request_cls); });
+  return next == ConnectionAction::Close ? MHD_NO : MHD_YES;
 }
 
-Next MhdServer::hear(Client& client, std::string_view upload, void** request_cls) {
+ConnectionAction MhdServer::serve_request(Client& client, std::string_view upload, void** request_cls) {
   if (*request_cls == nullptr) {
-    if (!client.gate().admit_request()) return Next::Close;
+    if (!client.gate().admit_request()) return ConnectionAction::Close;
     *request_cls = &client;
     begin_request(client);
-    return Next::GoOn;
+    return ConnectionAction::KeepOpen;
   }
   if (upload.empty()) return client.request()->end();
   return client.request()->body({reinterpret_cast<const std::uint8_t*>(upload.data()), upload.size()});
@@ -323,8 +324,8 @@ void MhdServer::request_completed(void*, MHD_Connection* connection, void** requ
   loop::run_guarded("the end of a request", [&] { request->on_completed(); });
 }
 
-void MhdServer::connection_changed(void* cls, MHD_Connection* connection, void** client_cls,
-                                   MHD_ConnectionNotificationCode what) {
+void MhdServer::on_connection_change(void* cls, MHD_Connection* connection, void** client_cls,
+                                     MHD_ConnectionNotificationCode what) {
   auto& server = *static_cast<MhdServer*>(cls);
   if (what == MHD_CONNECTION_NOTIFY_STARTED) {
     loop::run_guarded("a connection of the team", [&] { server.on_connected(connection, client_cls); });

@@ -20,7 +20,7 @@ namespace adit::intake {
 class TokenGuesses;
 
 /// Why the server closed a connection or refused a request.
-enum class Ended : std::uint8_t {
+enum class CloseReason : std::uint8_t {
   NoRoom,      // refused: its address, or all together, have as many requests in flight as allowed
   GaveWay,     // for another one: it was unauthenticated, or its address had more than its share
   Idle,        // for another one: it was between requests
@@ -43,7 +43,8 @@ struct Listen {
   std::chrono::milliseconds idle{60000};       // between requests
   std::chrono::milliseconds late{1000};        // delay of late answers (TokenGuesses)
   TokenGuesses* guesses = nullptr;             // must outlive the server; null: its own
-  std::function<void(Ended why, const std::string& address)> on_ended = {};  // called for each; may be empty
+  std::function<void(CloseReason why, const std::string& address)> on_ended =
+      {};  // called for each; may be empty
 };
 
 /// The head of one request. Valid until the request ends.
@@ -95,7 +96,7 @@ class Responder {
   virtual ~Responder() = default;
   virtual void answer(Answer answer) = 0;
   virtual std::shared_ptr<Stream> stream(std::string_view content_type) = 0;
-  virtual bool client_gone() const = 0;
+  virtual bool is_client_gone() const = 0;
 };
 
 /// A base for a Responder that gives its answers to another one, changed or later.
@@ -105,7 +106,7 @@ class PassingResponder : public Responder {
   std::shared_ptr<Stream> stream(std::string_view content_type) override {
     return inner_->stream(content_type);
   }
-  bool client_gone() const override { return inner_->client_gone(); }
+  bool is_client_gone() const override { return inner_->is_client_gone(); }
 
  protected:
   Responder& inner() const { return *inner_; }

@@ -20,7 +20,7 @@ struct Shares {
 };
 
 /// One connection, as the shares see it.
-struct Held {
+struct ConnectionInfo {
   enum class Activity : std::uint8_t {
     Fresh,    // accepted, and its bytes were not checked yet
     Idle,     // between requests
@@ -39,18 +39,19 @@ struct Held {
 /// The number of the unauthenticated connection to close, or nullopt if they are within their share or all
 /// fresh. It belongs to the address with most such connections: an idle one, or else the oldest. Fresh
 /// connections are not closed, because they may be about to show a token.
-std::optional<std::uint64_t> unauthenticated_to_close(std::span<const Held> held, const Shares& shares);
+std::optional<std::uint64_t> unauthenticated_to_close(std::span<const ConnectionInfo> held,
+                                                      const Shares& shares);
 
 /// Whether one more authenticated request has room, and the connection that gives way for it.
 struct Room {
   bool is_there = true;
-  std::optional<std::uint64_t> gives_way;  // Held::number
+  std::optional<std::uint64_t> gives_way;  // ConnectionInfo::number
 };
 
 /// For a request from `address` that has shown a token, on a connection that is not among `others`. The
 /// connection that gives way is the one idle longest; or one that may have hung up; or, if another address
 /// has more connections than this one would then have, the oldest of that address whose request is not whole.
 /// An authenticated client that waits for the answer to a whole request never gives way.
-Room room_for(std::string_view address, std::span<const Held> others, const Shares& shares);
+Room room_for(std::string_view address, std::span<const ConnectionInfo> others, const Shares& shares);
 
 }  // namespace adit::intake

@@ -12,9 +12,9 @@ namespace adit::intake {
 
 TokenGuesses::Verdict TokenGuesses::right(const std::string& address, loop::Instant now) {
   Count& count = count_of(address, now);
-  if (!count.has_been_right && !count.guesses.has_one(now)) return {Looked::NotLookedAt, true};
+  if (!count.has_been_right && !count.guesses.has_guess(now)) return {TokenCheck::NotChecked, true};
   count.has_been_right = true;
-  return {Looked::Right, false};
+  return {TokenCheck::Right, false};
 }
 
 TokenGuesses::Verdict TokenGuesses::wrong(const std::string& address, std::string_view token,
@@ -22,13 +22,13 @@ TokenGuesses::Verdict TokenGuesses::wrong(const std::string& address, std::strin
   Count& count = count_of(address, now);
   const std::string_view kept = token.substr(0, icd::BearerToken::kLongest + 1);  // longer: no token
   if (std::ranges::find(count.wrong, kept) == count.wrong.end()) {
-    if (!count.guesses.has_one(now)) return {Looked::NotLookedAt, true};
+    if (!count.guesses.has_guess(now)) return {TokenCheck::NotChecked, true};
     count.guesses.use(now);
     count.wrong[std::exchange(count.next, (count.next + 1) % count.wrong.size())] = kept;
   }
-  const bool late = !count.answers.has_one(now);
+  const bool late = !count.answers.has_guess(now);
   if (!late) count.answers.use(now);
-  return {Looked::Wrong, late};
+  return {TokenCheck::Wrong, late};
 }
 
 TokenGuesses::Count& TokenGuesses::count_of(const std::string& address, loop::Instant now) {
@@ -44,12 +44,12 @@ TokenGuesses::Count& TokenGuesses::count_of(const std::string& address, loop::In
 
 namespace {
 
-using Looked = TokenGuesses::Looked;
+using TokenCheck = TokenGuesses::TokenCheck;
 
 /// Delays the answer. Owned by its Late, which lives as long as the request.
-class LateResponder final : public PassingResponder {
+class DelayedResponder final : public PassingResponder {
  public:
-  LateResponder(loop::Loop& loop, std::shared_ptr<Responder> responder, std::chrono::milliseconds late)
+  DelayedResponder(loop::Loop& loop, std::shared_ptr<Responder> responder, std::chrono::milliseconds late)
       : PassingResponder(std::move(responder)), loop_(loop), late_(late) {}
 
   void answer(Answer answer) override {
@@ -68,9 +68,9 @@ class LateResponder final : public PassingResponder {
 };
 
 /// Passes the body on to `sink` until there is an answer.
-class Late final : public BodySink {
+class DelayedSink final : public BodySink {
  public:
-  Late(std::shared_ptr<LateResponder> responder, std::unique_ptr<BodySink> sink)
+  DelayedSink(std::shared_ptr<DelayedResponder> responder, std::unique_ptr<BodySink> sink)
       : responder_(std::move(responder)), sink_(std::move(sink)) {}
   bool on_body(std::span<const std::uint8_t> piece) override {
     const bool more = sink_ && !responder_->has_answer() && sink_->on_body(piece);
@@ -84,11 +84,11 @@ class Late final : public BodySink {
   }
 
  private:
-  const std::shared_ptr<LateResponder> responder_;
+  const std::shared_ptr<DelayedResponder> responder_;
   const std::unique_ptr<BodySink> sink_;
 };
 
-Answer not_looked_at() {
+Answer unchecked_answer() {
   return error_answer(
       icd::Status::TooManyRequests,
       "too many wrong tokens from this address; this token was not checked; try again in a second");
@@ -105,11 +105,11 @@ Credentials Turnstile::read_credentials(const RequestHead& head) {
   } else if (shown == Credentials::WrongToken) {
     verdict_ = guesses_.wrong(head.peer(), token, loop_.now());
   }
-  if (verdict_.looked == Looked::Right) return shown;
+  if (verdict_.looked == TokenCheck::Right) return shown;
   if (!token.empty() || !icd::uri_of(head.path())) {
-    refused_(Ended::WrongToken, head.peer());
+    refused_(CloseReason::WrongToken, head.peer());
   } else if (head.method() == "POST") {
-    refused_(Ended::NoToken, head.peer());
+    refused_(CloseReason::NoToken, head.peer());
   }
   return Credentials::WrongToken;
 }
@@ -117,12 +117,12 @@ Credentials Turnstile::read_credentials(const RequestHead& head) {
 std::unique_ptr<BodySink> Turnstile::open(const RequestHead& head, std::shared_ptr<Responder> responder,
                                           std::shared_ptr<FlowControl> flow) {
   if (!verdict_.late) return handler_.open(head, std::move(responder), std::move(flow));
-  auto late = std::make_shared<LateResponder>(loop_, std::move(responder), late_);
-  if (verdict_.looked == Looked::Wrong) {
-    return std::make_unique<Late>(late, handler_.open(head, late, std::move(flow)));
+  auto late = std::make_shared<DelayedResponder>(loop_, std::move(responder), late_);
+  if (verdict_.looked == TokenCheck::Wrong) {
+    return std::make_unique<DelayedSink>(late, handler_.open(head, late, std::move(flow)));
   }
-  late->answer(not_looked_at());
-  return std::make_unique<Late>(std::move(late), nullptr);
+  late->answer(unchecked_answer());
+  return std::make_unique<DelayedSink>(std::move(late), nullptr);
 }
 
 }  // namespace adit::intake

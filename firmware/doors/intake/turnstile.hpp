@@ -29,9 +29,9 @@ class TokenGuesses {
   /// Beyond it, an address is removed, if possible one without a right token.
   static constexpr std::size_t kMostAddresses = 256;
 
-  enum class Looked : std::uint8_t { Right, Wrong, NotLookedAt };
+  enum class TokenCheck : std::uint8_t { Right, Wrong, NotChecked };
   struct Verdict {
-    Looked looked = Looked::Right;
+    TokenCheck looked = TokenCheck::Right;
     bool late = false;  // delay its answer
 
     friend bool operator==(const Verdict&, const Verdict&) = default;
@@ -48,7 +48,7 @@ class TokenGuesses {
   /// kFree at once, then one each kEach.
   class Allowance {
    public:
-    bool has_one(loop::Instant now) const { return used_up_to_ - now <= kEach * (kFree - 1); }
+    bool has_guess(loop::Instant now) const { return used_up_to_ - now <= kEach * (kFree - 1); }
     void use(loop::Instant now) { used_up_to_ = std::max(used_up_to_, now) + kEach; }
 
    private:
@@ -71,7 +71,7 @@ class TokenGuesses {
 /// unauthenticated connections limits late answers, and no bytes of a body are read meanwhile.
 class Turnstile final : public Handler {
  public:
-  using Refused = std::function<void(Ended why, const std::string& address)>;
+  using Refused = std::function<void(CloseReason why, const std::string& address)>;
 
   /// `refused` is called for each request with a wrong token, and for each POST to a URI of the ICD without
   /// one. Other requests without a token are browsers or monitors. The references must outlive this object.

@@ -22,7 +22,7 @@ Sender UploadContext::sender_at_end() const {
   Sender whole = sender;
   whole.ended = ++uploads->last;
   for (const Upload* other : uploads->under_way) {
-    const bool is_other = other->is_like(*this) && other->began() != sender.began;
+    const bool is_other = other->is_same_source(*this) && other->began() != sender.began;
     if (is_other && (whole.overlaps == 0 || other->began() < whole.overlaps)) whole.overlaps = other->began();
   }
   return whole;
@@ -61,11 +61,11 @@ void SmallUpload::on_end() {
   if (!document) {
     context_.refuse(document.error());
   } else {
-    give_to_desk(*document);
+    give_to_handler(*document);
   }
 }
 
-void SmallUpload::give_to_desk(const codec::Document& document) {
+void SmallUpload::give_to_handler(const codec::Document& document) {
   switch (context_.uri) {
     case icd::Uri::StateUpdate:
       return accept_state(document);
@@ -90,7 +90,7 @@ void SmallUpload::accept_report(const codec::Document& document) {
   const auto read = codec::read_artifact_report(document, rules_);
   if (!read) return context_.refuse(read.error());
   if (!read->left_out.empty())
-    context_.message_handler.left_out(context_.uri, context_.sender, read->left_out);
+    context_.message_handler.record_dropped(context_.uri, context_.sender, read->left_out);
   context_.message_handler.accept(read->report, context_.sender, context_.responder);
 }
 
@@ -108,19 +108,19 @@ class Decoding {
         decoder_(kind, codec::Split::MapData, {.values = kSmallValues, .data_bytes = rules.map_bytes}) {}
 
   /// The data that was removed before the end.
-  struct Before {
+  struct EarlierData {
     std::shared_ptr<MapArrival> stored;  // null: no data was stored
     icd::ChunkedBytes left;              // data after the stored data
   };
 
   /// Decodes about kStored bytes of data. has_more(): received bytes are left. `before`: set if the body is
   /// whole.
-  void work(Pieces& pieces, std::optional<Before> before) {
+  void work(Pieces& pieces, std::optional<EarlierData> before) {
     for (auto& piece : pieces) pieces_.push_back(std::move(piece));
     pieces.clear();
-    const std::size_t enough = decoder_.data_held() + MapUpload::kStored;
+    const std::size_t enough = decoder_.held_bytes() + MapUpload::kStored;
     const std::size_t long_enough = decoder_.size() + kMostOfBody;
-    while (has_more() && decoder_.data_held() < enough && decoder_.size() < long_enough) {
+    while (has_more() && decoder_.held_bytes() < enough && decoder_.size() < long_enough) {
       if (auto fed = feed_some(); !fed) {
         result_ = std::unexpected(std::move(fed.error()));
         return;
@@ -130,14 +130,14 @@ class Decoding {
   }
 
   bool has_more() const { return !pieces_.empty(); }
-  std::size_t data_held() const { return decoder_.data_held(); }
+  std::size_t held_bytes() const { return decoder_.held_bytes(); }
   icd::ChunkedBytes take_data() { return decoder_.take_data(); }
 
   /// nullopt while more of the body is to come.
   std::optional<icd::Checked<icd::MapUpdate>>& result() { return result_; }
 
  private:
-  icd::Checked<icd::MapUpdate> finish(Before before) {
+  icd::Checked<icd::MapUpdate> finish(EarlierData before) {
     auto document = ADIT_TRY(decoder_.finish());
     if (before.stored) {
       auto data = ADIT_TRY(before.stored->stored_bytes());
@@ -176,11 +176,11 @@ class Decoding {
 
 }  // namespace
 
-class MapUpload::State final : public Taking, public std::enable_shared_from_this<State> {
+class MapUpload::State final : public LoopPart, public std::enable_shared_from_this<State> {
  public:
   State(UploadContext context, MapUploadOptions options, std::shared_ptr<FlowControl> flow,
         loop::Workers& workers, std::shared_ptr<UploadBudget> budget)
-      : Taking(std::move(context), std::move(budget)),
+      : LoopPart(std::move(context), std::move(budget)),
         options_(std::move(options)),
         without_room_(options_.without_room, context_.sender.address),
         flow_(std::move(flow)),
@@ -195,7 +195,7 @@ class MapUpload::State final : public Taking, public std::enable_shared_from_thi
   }
 
  private:
-  void let_go() override {
+  void release_body() override {
     pending_.clear();
     left_ = {};
     decoding_.reset();
@@ -203,19 +203,19 @@ class MapUpload::State final : public Taking, public std::enable_shared_from_thi
   }
   bool charge();
   bool is_held();
-  bool is_worth_it() const;
+  bool has_enough_work() const;
   void give_to_worker();
   void on_worked();
-  void take_result(icd::Checked<icd::MapUpdate> result);
-  void store_what_came();
+  void on_result(icd::Checked<icd::MapUpdate> result);
+  void store_received();
   void on_stored(icd::ChunkedBytes left);
-  void go_on();
-  static icd::Refusal not_held() {
+  void process();
+  static icd::Refusal no_memory_refusal() {
     return {icd::Status::ServiceUnavailable, "Adit has no memory for this map; send it again later"};
   }
   void on_failed() {
     at_work_ = false;
-    reject(not_held());
+    reject(no_memory_refusal());
   }
 
   MapUploadOptions options_;
@@ -261,7 +261,7 @@ bool MapUpload::State::charge() {
 
 /// Charges the budget for data that cannot be stored. Not while the worker runs. False: the map is rejected.
 bool MapUpload::State::is_held() {
-  const std::size_t holds = left_.empty() ? 0 : left_.size() + decoding_->data_held();
+  const std::size_t holds = left_.empty() ? 0 : left_.size() + decoding_->held_bytes();
   if (without_room_.grow_to(holds)) return true;
   reject({icd::Status::ServiceUnavailable, "the queue of maps is full; send this map again later"});
   return false;
@@ -269,22 +269,22 @@ bool MapUpload::State::is_held() {
 
 /// Not while the worker runs. The beginning is decoded at once, because it may be rejected. After that the
 /// worker does not start for a few bytes.
-bool MapUpload::State::is_worth_it() const {
+bool MapUpload::State::has_enough_work() const {
   if (whole_ || decoding_->has_more()) return true;
   const bool is_first = pending_bytes_ == context_.sender.bytes;
   return !pending_.empty() && (is_first || pending_bytes_ >= kTogether);
 }
 
 void MapUpload::State::give_to_worker() {
-  if (at_work_ || over_ || !is_worth_it()) return;
-  if (storing_ && (whole_ || decoding_->data_held() >= kStored)) return;  // on_stored() continues
+  if (at_work_ || over_ || !has_enough_work()) return;
+  if (storing_ && (whole_ || decoding_->held_bytes() >= kStored)) return;  // on_stored() continues
   at_work_ = true;
   auto pieces = std::make_shared<Pieces>();
   if (!decoding_->has_more()) {
     pieces->swap(pending_);
     pending_bytes_ = 0;
   }
-  std::optional<Decoding::Before> before;
+  std::optional<Decoding::EarlierData> before;
   if (whole_ && pending_.empty()) before.emplace(has_stored_ ? arrival_ : nullptr, left_);
   // `done` also holds the arrival, so that the loop is the last to release it.
   workers_.submit(
@@ -298,13 +298,13 @@ void MapUpload::State::on_worked() {
   at_work_ = false;
   if (over_) return;
   const bool well = loop::run_guarded("receiving a map", [this] {
-    if (auto& result = decoding_->result()) return take_result(std::move(*result));
-    go_on();
+    if (auto& result = decoding_->result()) return on_result(std::move(*result));
+    process();
   });
-  if (!well) fail(not_held());
+  if (!well) fail(no_memory_refusal());
 }
 
-void MapUpload::State::take_result(icd::Checked<icd::MapUpdate> result) {
+void MapUpload::State::on_result(icd::Checked<icd::MapUpdate> result) {
   const auto arrival = arrival_;
   abandon();
   if (!result) return context_.answer(std::unexpected(std::move(result.error())));
@@ -314,19 +314,19 @@ void MapUpload::State::take_result(icd::Checked<icd::MapUpdate> result) {
 }
 
 /// Not while the worker runs.
-void MapUpload::State::go_on() {
-  data_ = taken_ + decoding_->data_held();
+void MapUpload::State::process() {
+  data_ = taken_ + decoding_->held_bytes();
   if (!charge() || !is_held()) return;
-  store_what_came();
+  store_received();
   give_to_worker();
   if (pending_bytes_ <= kPending && std::exchange(held_back_, false)) flow_->resume();
 }
 
 /// If there was no room once, the rest is held in memory until the end, when the map is checked.
-void MapUpload::State::store_what_came() {
-  if (storing_ || !left_.empty() || decoding_->data_held() < kStored) return;
+void MapUpload::State::store_received() {
+  if (storing_ || !left_.empty() || decoding_->held_bytes() < kStored) return;
   has_stored_ = storing_ = true;
-  taken_ += decoding_->data_held();
+  taken_ += decoding_->held_bytes();
   arrival_->store(decoding_->take_data(),
                   [self = shared_from_this()](icd::ChunkedBytes left) { self->on_stored(std::move(left)); });
 }
@@ -336,7 +336,7 @@ void MapUpload::State::on_stored(icd::ChunkedBytes left) {
   if (over_) return;
   left_ = std::move(left);
   if (at_work_) return;
-  if (!loop::run_guarded("storing a map", [this] { go_on(); })) on_failed();
+  if (!loop::run_guarded("storing a map", [this] { process(); })) on_failed();
 }
 
 MapUpload::MapUpload(const UploadContext& context, MapUploadOptions options,
@@ -380,11 +380,11 @@ Parts read_large(codec::BodyKind kind, const icd::Rules& rules, Body& body) {
 
 }  // namespace
 
-class MarkersUpload::State final : public Taking, public std::enable_shared_from_this<State> {
+class MarkersUpload::State final : public LoopPart, public std::enable_shared_from_this<State> {
  public:
   State(UploadContext context, codec::BodyKind kind, const icd::Rules& rules, loop::Workers& workers,
         std::shared_ptr<UploadBudget> budget, const std::shared_ptr<TurnQueue>& turns)
-      : Taking(std::move(context), std::move(budget)),
+      : LoopPart(std::move(context), std::move(budget)),
         kind_(kind),
         rules_(rules),
         workers_(workers),
@@ -398,18 +398,19 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
   void on_whole() override;
 
  private:
-  void let_go() override { body_.clear(); }
+  void release_body() override { body_.clear(); }
   void keep(std::span<const std::uint8_t> piece);
   void feed(std::span<const std::uint8_t> piece);
   /// Charges the budget for the held bytes.
   void charge();
   void give_to_worker();
-  void small_was_read(std::shared_ptr<Body> body, Parts parts);
+  void on_small_body(std::shared_ptr<Body> body, Parts parts);
   void wait_for_turn();
   void read_large_one();
   void on_read(Parts parts) {
     if (over_) return;
-    if (!loop::run_guarded("receiving markers", [&] { on_decoded(std::move(parts)); })) fail(not_held());
+    if (!loop::run_guarded("receiving markers", [&] { on_decoded(std::move(parts)); }))
+      fail(no_memory_refusal());
   }
   void end_turn() {
     if (const auto turns = turns_.lock()) turns->end();
@@ -426,10 +427,10 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
           self->context_.answer(taken);
         });
   }
-  static icd::Refusal not_held() {
+  static icd::Refusal no_memory_refusal() {
     return {icd::Status::ServiceUnavailable, "Adit has no memory for these markers; send them again later"};
   }
-  void on_failed() { reject(not_held()); }
+  void on_failed() { reject(no_memory_refusal()); }
 
   codec::BodyKind kind_;
   icd::Rules rules_;
@@ -474,11 +475,11 @@ void MarkersUpload::State::give_to_worker() {
   workers_.submit(
       loop::Urgency::OnTheWay,
       [kind = kind_, rules = rules_, body, parts] { *parts = read_small(kind, rules, *body); },
-      [self = shared_from_this(), body, parts] { self->small_was_read(body, std::move(*parts)); },
+      [self = shared_from_this(), body, parts] { self->on_small_body(body, std::move(*parts)); },
       [self = shared_from_this()] { self->on_failed(); });
 }
 
-void MarkersUpload::State::small_was_read(std::shared_ptr<Body> body, Parts parts) {
+void MarkersUpload::State::on_small_body(std::shared_ptr<Body> body, Parts parts) {
   if (over_) return;
   if (parts || !is_too_large(parts.error())) return on_read(std::move(parts));
   body_ = std::move(*body);

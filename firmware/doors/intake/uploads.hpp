@@ -110,11 +110,11 @@ class TurnQueue {
     auto line = std::ranges::find(lines_, address, &Line::address);
     if (line == lines_.end()) line = lines_.insert(line, {.address = address, .waiting = {}});
     line->waiting.push_back(std::move(begin));
-    go_on();
+    start_next();
   }
   void end() {
     under_way_ = false;
-    go_on();
+    start_next();
   }
 
  private:
@@ -123,7 +123,7 @@ class TurnQueue {
     std::deque<std::function<void()>> waiting;  // not empty
   };
 
-  void go_on() {
+  void start_next() {
     if (under_way_ || lines_.empty()) return;
     under_way_ = true;
     Line first = std::move(lines_.front());
@@ -159,7 +159,7 @@ class Upload : public BodySink {
   virtual void reject(const icd::Refusal& refusal) = 0;
 
   /// Whether it is of the same address and URI.
-  bool is_like(const UploadContext& context) const {
+  bool is_same_source(const UploadContext& context) const {
     return uri_ == context.uri && address_ == context.sender.address;
   }
   std::uint64_t began() const { return began_; }
@@ -175,22 +175,22 @@ class Upload : public BodySink {
 class WorkerUpload : public Upload {
  public:
   /// The loop's part. It outlives the upload while a worker runs.
-  class Taking {
+  class LoopPart {
    public:
-    Taking(UploadContext context, std::shared_ptr<UploadBudget> budget)
+    LoopPart(UploadContext context, std::shared_ptr<UploadBudget> budget)
         : context_(std::move(context)), share_(std::move(budget), context_.sender.address) {
       context_.sender.bytes = 0;
     }
-    virtual ~Taking() = default;
-    Taking(const Taking&) = delete;
-    Taking& operator=(const Taking&) = delete;
+    virtual ~LoopPart() = default;
+    LoopPart(const LoopPart&) = delete;
+    LoopPart& operator=(const LoopPart&) = delete;
 
     /// As BodySink::on_body().
     virtual bool consume(std::span<const std::uint8_t> piece) = 0;
     virtual void on_whole() = 0;
     void abandon() {
       over_ = true;
-      let_go();
+      release_body();
     }
     void reject(const icd::Refusal& refusal) {
       if (over_) return;
@@ -211,10 +211,10 @@ class WorkerUpload : public Upload {
 
    private:
     /// Frees the held parts of the body.
-    virtual void let_go() = 0;
+    virtual void release_body() = 0;
   };
 
-  WorkerUpload(const UploadContext& context, std::shared_ptr<Taking> taking)
+  WorkerUpload(const UploadContext& context, std::shared_ptr<LoopPart> taking)
       : Upload(context), taking_(std::move(taking)) {}
   ~WorkerUpload() override { taking_->abandon(); }
   WorkerUpload(const WorkerUpload&) = delete;
@@ -226,7 +226,7 @@ class WorkerUpload : public Upload {
   void reject(const icd::Refusal& refusal) final { taking_->reject(refusal); }
 
  private:
-  std::shared_ptr<Taking> taking_;
+  std::shared_ptr<LoopPart> taking_;
 };
 
 /// Receives a state or a report of at most a megabyte. The loop decodes it as it arrives.
@@ -249,7 +249,7 @@ class SmallUpload final : public Upload {
   }
 
  private:
-  void give_to_desk(const codec::Document& document);
+  void give_to_handler(const codec::Document& document);
   /// Gives the accepted parts to the message handler. If the message handler accepts them, the answer is
   /// about the rejected parts.
   void accept_state(const codec::Document& document);

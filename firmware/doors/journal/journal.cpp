@@ -35,7 +35,7 @@ bool read_into(std::map<Key, Value>& all, std::string_view said) {
 
 }  // namespace
 
-bool Carried::apply(RecordKind kind, std::string_view said) {
+bool HandoverState::apply(RecordKind kind, std::string_view said) {
   switch (kind) {
     case RecordKind::Clock:
       return read_clock(said);
@@ -47,7 +47,7 @@ bool Carried::apply(RecordKind kind, std::string_view said) {
     case RecordKind::StateSent:
       return read_state_sent(said);
     case RecordKind::StateDone:
-      state_is_done();
+      on_state_done();
       return true;
     case RecordKind::StateBack:
       put_back_state();
@@ -77,7 +77,7 @@ bool Carried::apply(RecordKind kind, std::string_view said) {
   return false;
 }
 
-bool Carried::read_clock(std::string_view said) {
+bool HandoverState::read_clock(std::string_view said) {
   Clock clock;
   if (!store::read(said, clock)) return false;
   set_boot(clock.boot);
@@ -85,7 +85,7 @@ bool Carried::read_clock(std::string_view said) {
   return true;
 }
 
-void Carried::set_boot(const std::string& boot) {
+void HandoverState::set_boot(const std::string& boot) {
   if (!clock_ || clock_->boot == boot) return;
   clock_.reset();
   paces_.clear();
@@ -93,18 +93,18 @@ void Carried::set_boot(const std::string& boot) {
   heard_.clear();
 }
 
-bool Carried::read_senders(std::string_view said) {
+bool HandoverState::read_senders(std::string_view said) {
   queues::StampShift::Clocks clocks;
   if (!store::read(said, clocks)) return false;
   for (const auto& [stamper, clock] : clocks) {
     if (!is_known(stamper.uri)) return false;
-    senders_.carry_on(stamper, clock);
+    senders_.restore(stamper, clock);
   }
   return true;
 }
 
 /// queues::StateQueue::news_in() has kept only the newest poses.
-bool Carried::read_poses(std::string_view said) {
+bool HandoverState::read_poses(std::string_view said) {
   std::vector<std::tuple<std::string, std::string, std::optional<icd::Stamp>, icd::Pose>> read;
   if (!store::read(said, read)) return false;
   std::vector<queues::PostedPose> poses;
@@ -129,7 +129,7 @@ bool Carried::read_poses(std::string_view said) {
 }
 
 /// One state is in flight at a time, so an earlier one without an answer was not delivered.
-bool Carried::read_state_sent(std::string_view said) {
+bool HandoverState::read_state_sent(std::string_view said) {
   std::vector<std::string> robots;
   if (!store::read(said, robots)) return false;
   put_back_state();
@@ -141,7 +141,7 @@ bool Carried::read_state_sent(std::string_view said) {
   return true;
 }
 
-bool Carried::read_markers(std::string_view said) {
+bool HandoverState::read_markers(std::string_view said) {
   std::vector<icd::Marker> markers;
   if (!store::read(said, markers)) return false;
   for (icd::Marker& marker : markers) markers_.apply(std::move(marker));
@@ -150,7 +150,7 @@ bool Carried::read_markers(std::string_view said) {
 
 /// The sent markers are among the queued ones; newer changes come in later records. Earlier markers without
 /// an answer are queued again.
-bool Carried::read_sent(std::string_view said) {
+bool HandoverState::read_sent(std::string_view said) {
   std::vector<std::tuple<std::string, std::int32_t, icd::MarkerAction>> sent;
   if (!store::read(said, sent)) return false;
   put_back_markers();
@@ -163,7 +163,7 @@ bool Carried::read_sent(std::string_view said) {
   return true;
 }
 
-bool Carried::read_heard(std::string_view said) {
+bool HandoverState::read_heard(std::string_view said) {
   Heard heard;
   const auto of_earlier_version = [said] { return std::string(said) + store::bytes_of(Heard().behind); };
   if (!store::read(said, heard) && !store::read(of_earlier_version(), heard)) return false;
@@ -171,29 +171,29 @@ bool Carried::read_heard(std::string_view said) {
   return true;
 }
 
-double Carried::lag(const std::string& robot, std::size_t kind) const {
+double HandoverState::lag(const std::string& robot, std::size_t kind) const {
   const auto heard = heard_.find(robot);
   return heard == heard_.end() ? Heard::kNever : heard->second.behind.at(kind);
 }
 
-void Carried::state_is_done() {
+void HandoverState::on_state_done() {
   for (auto& [name, robot] : robots_) robot.under_way = false;
   std::erase_if(robots_, [](const auto& robot) { return !robot.second.news; });
 }
 
-void Carried::put_back_state() {
+void HandoverState::put_back_state() {
   for (auto& [name, robot] : robots_) robot.news = std::exchange(robot.under_way, false) || robot.news;
 }
 
 /// As queues::MarkerQueue::put_back().
-void Carried::put_back_markers() {
+void HandoverState::put_back_markers() {
   queues::MarkerChanges older;
   for (icd::Marker& marker : std::exchange(markers_under_way_, {})) older.apply(std::move(marker));
   markers_.apply_before(std::move(older));
 }
 
-icd::MarkersUpdate Carried::markers() const {
-  Carried ended = *this;
+icd::MarkersUpdate HandoverState::markers() const {
+  HandoverState ended = *this;
   ended.put_back_markers();
   icd::MarkersUpdate update;
   update.markers.reserve(ended.markers_.size().count);
@@ -201,7 +201,7 @@ icd::MarkersUpdate Carried::markers() const {
   return update;
 }
 
-void Carried::write(const std::function<void(RecordKind, std::string_view)>& to) const {
+void HandoverState::write(const std::function<void(RecordKind, std::string_view)>& to) const {
   if (clock_) to(RecordKind::Clock, store::bytes_of(*clock_));
   to(RecordKind::Senders, store::bytes_of(senders_.clocks()));
   for (const auto& [uri, learned] : paces_) to(RecordKind::Pace, store::bytes_of(uri, learned));
@@ -232,8 +232,8 @@ void Carried::write(const std::function<void(RecordKind, std::string_view)>& to)
   write_markers(waiting);
 }
 
-std::pair<Carried, std::string> read_records(const store::Contents& contents) {
-  Carried carried;
+std::pair<HandoverState, std::string> read_records(const store::Contents& contents) {
+  HandoverState carried;
   std::string damage;
   std::size_t unknown = 0;
   for (const store::Item& item : contents.items) {
@@ -311,12 +311,12 @@ Journal::Kept Journal::open() {
 }
 
 bool Journal::can_be_read(const std::string& folder) {
-  if (!host::may_exist(folder)) return true;
+  if (!host::can_exist(folder)) return true;
   const auto directory = store::Directory::open(folder);
   return directory && store::Contents::read(*directory, kKeeping);
 }
 
-Carried Journal::read() {
+HandoverState Journal::read() {
   if (!contents_) {
     (void)on_failed(unread_);
     return {};
@@ -370,7 +370,7 @@ void Journal::note(RecordKind kind, std::string said) {
 
 void Journal::record_return(RecordKind sent, RecordKind back) {
   const auto last = std::find_if(unsaid_.rbegin(), unsaid_.rend(),
-                                 [&](const Unsaid& unsaid) { return unsaid.kind == sent; });
+                                 [&](const PendingRecord& unsaid) { return unsaid.kind == sent; });
   if (last == unsaid_.rend()) return note(back, {});
   unsaid_size_ -= last->said.size();
   unsaid_.erase(std::next(last).base());
@@ -388,14 +388,14 @@ Journal::Kept Journal::append(RecordKind kind, std::string_view said) {
     log_.emplace(*directory_, kKeeping);
     if (auto started = log_->start(*contents_); !started) return on_failed(started.error().what);
   }
-  if (auto said_before = append_unsaid(); !said_before) return said_before;
+  if (auto said_before = append_pending(); !said_before) return said_before;
   if (auto written = write(kind, said); !written) return written;
   trouble_.clear();
   if (size_ > std::max(least_, snapshot_)) compact();
   return {};
 }
 
-Journal::Kept Journal::append_unsaid() {
+Journal::Kept Journal::append_pending() {
   for (auto unsaid = unsaid_.begin(); unsaid != unsaid_.end(); unsaid = unsaid_.erase(unsaid)) {
     if (auto written = write(unsaid->kind, unsaid->said); !written) return written;
     unsaid_size_ -= unsaid->said.size();
@@ -421,10 +421,10 @@ Journal::Kept Journal::on_failed(const std::string& why) {
 /// Compacts all records so far, while new ones go to the next file.
 void Journal::compact() {
   if (compacting_) return;
-  if (const auto turned = log_->turn(); !turned) return not_compacted(turned.error());
+  if (const auto turned = log_->turn(); !turned) return on_compaction_failed(turned.error());
   size_ = 0;
   auto begun = store::Snapshot::begin(*directory_, kKeeping, *log_);
-  if (!begun) return not_compacted(begun.error());
+  if (!begun) return on_compaction_failed(begun.error());
   compacting_ = true;
   const auto snapshot = std::make_shared<store::Snapshot>(std::move(*begun));
   const auto outcome = std::make_shared<store::Result<std::size_t>>();
@@ -435,14 +435,14 @@ void Journal::compact() {
       },
       [this, outcome] {
         compacting_ = false;
-        if (!*outcome) return not_compacted(outcome->error());
+        if (!*outcome) return on_compaction_failed(outcome->error());
         least_ = kLeastTurn;
         snapshot_ = **outcome;
       });
 }
 
 /// Retries after kLeastTurn more bytes.
-void Journal::not_compacted(const store::Error& error) {
+void Journal::on_compaction_failed(const store::Error& error) {
   host::log(host::Level::Warning, "cannot compact the journal", {{"why", error.what}});
   least_ = size_ + kLeastTurn;
 }

@@ -58,7 +58,7 @@ struct Clock {
   pace::Instant at{};
   double stamp = 0;
   double step_to = 0, step_by = 0;  // dispatch::ClockStep at the start of this boot
-  double off = 0, off_since = 0;    // forward::Clocks::Off
+  double off = 0, off_since = 0;    // forward::Clocks::Deviation
 };
 
 /// When a robot was last heard, by the stamp clock, and how often it sends.
@@ -77,7 +77,7 @@ struct Heard {
 };
 
 /// State that a process hands to the next: the sum of a journal's records.
-class Carried {
+class HandoverState {
  public:
   /// A pose that is queued (`news`), or in flight without an answer.
   struct Robot {
@@ -97,9 +97,9 @@ class Carried {
   /// std::nullopt: the first process of this boot.
   const std::optional<Clock>& clock() const { return clock_; }
   const queues::StampShift& senders() const { return senders_; }
-  const std::map<icd::Uri, pace::Learned>& paces() const { return paces_; }
+  const std::map<icd::Uri, pace::LearnedRate>& paces() const { return paces_; }
   const std::map<icd::Uri, icd::Stamp>& stamps() const { return stamps_; }
-  /// queues::Canvases::Posted. std::nullopt: not recorded.
+  /// queues::Canvases::PostedAreas. std::nullopt: not recorded.
   const std::optional<std::map<std::string, queues::Extent>>& grids() const { return grids_; }
   /// Robots whose present pose is not delivered. Delivered poses are dropped, because the next process may
   /// serve another Command Post.
@@ -119,13 +119,13 @@ class Carried {
   bool read_markers(std::string_view said);
   bool read_sent(std::string_view said);
   bool read_heard(std::string_view said);
-  void state_is_done();
+  void on_state_done();
   void put_back_state();
   void put_back_markers();
 
   std::optional<Clock> clock_;
   queues::StampShift senders_;
-  std::map<icd::Uri, pace::Learned> paces_;
+  std::map<icd::Uri, pace::LearnedRate> paces_;
   std::map<icd::Uri, icd::Stamp> stamps_;
   std::optional<std::map<std::string, queues::Extent>> grids_;
   std::map<icd::RobotName, Robot> robots_;
@@ -136,7 +136,7 @@ class Carried {
 
 /// The sum of the records, and a sentence about damage, or "". After a gap no message counts as delivered,
 /// because the message that was delivered may be in the gap. Unknown records are logged.
-std::pair<Carried, std::string> read_records(const store::Contents& contents);
+std::pair<HandoverState, std::string> read_records(const store::Contents& contents);
 
 /// What the records of RecordKind::Markers say for an accepted message: at least one record, each of about a
 /// megabyte at most or of one marker. Any thread may make them.
@@ -171,9 +171,9 @@ template <>
 inline constexpr auto store::kMembers<queues::Extent> =
     std::tuple(&queues::Extent::left, &queues::Extent::bottom, &queues::Extent::right, &queues::Extent::top);
 template <>
-inline constexpr auto store::kMembers<pace::Learned> =
-    std::tuple(&pace::Learned::earliest, &pace::Learned::spacing, &pace::Learned::under_way,
-               &pace::Learned::from_answers, &pace::Learned::single);
+inline constexpr auto store::kMembers<pace::LearnedRate> =
+    std::tuple(&pace::LearnedRate::earliest, &pace::LearnedRate::spacing, &pace::LearnedRate::under_way,
+               &pace::LearnedRate::from_answers, &pace::LearnedRate::single);
 template <>
 inline constexpr auto store::kMembers<pace::Span> = std::tuple(&pace::Span::first, &pace::Span::last);
 template <>
@@ -220,7 +220,7 @@ namespace adit::journal {
 class Journal {
  public:
   /// Storage of the log.
-  static constexpr store::Keeping kKeeping{store::kInMemory, 0, false};
+  static constexpr store::LogOptions kKeeping{store::kInMemory, 0, false};
   /// Most bytes of unwritten records; more are lost.
   static constexpr std::size_t kMostUnsaid = 8u << 20;
   /// Least size at which a snapshot is made. A snapshot is made when the file is larger than this and than
@@ -234,7 +234,7 @@ class Journal {
 
   /// Records of earlier processes. If a file cannot be read, the files stay, the result is empty, and
   /// append() fails until the next start.
-  Carried read();
+  HandoverState read();
   /// Why a file of earlier processes cannot be read, or "".
   const std::string& unread() const { return unread_; }
   /// Whether all files of a journal's directory, if it exists, can be read now.
@@ -258,9 +258,7 @@ class Journal {
 
   void record_senders(const queues::StampShift::Clocks& clocks);
   /// For the next process. A failed record is dropped, because the next one replaces it.
-  void record_heard(const Heard& heard) {
-    (void)append(RecordKind::Heard, store::bytes_of(heard));
-  }
+  void record_heard(const Heard& heard) { (void)append(RecordKind::Heard, store::bytes_of(heard)); }
 
   /// Call before these poses or markers are sent.
   void record_state_sent(const icd::StateUpdate& update) {
@@ -273,7 +271,7 @@ class Journal {
   void record_state_answered(bool done);
   void record_markers_answered(bool done);
 
-  void record_pace(icd::Uri uri, const pace::Learned& learned) {
+  void record_pace(icd::Uri uri, const pace::LearnedRate& learned) {
     note(RecordKind::Pace, store::bytes_of(uri, learned));
   }
   void record_stamp(icd::Uri uri, icd::Stamp stamp) { note(RecordKind::Stamp, store::bytes_of(uri, stamp)); }
@@ -287,7 +285,7 @@ class Journal {
   const std::string& trouble() const { return trouble_; }
 
  private:
-  struct Unsaid {
+  struct PendingRecord {
     RecordKind kind;
     std::string said;
   };
@@ -297,10 +295,10 @@ class Journal {
   /// record.
   void record_return(RecordKind sent, RecordKind back);
   Kept append(RecordKind kind, std::string_view said);
-  Kept append_unsaid();
+  Kept append_pending();
   Kept write(RecordKind kind, std::string_view said);
   void compact();
-  void not_compacted(const store::Error& error);
+  void on_compaction_failed(const store::Error& error);
   Kept on_failed(const std::string& why);
 
   const std::string path_;
@@ -309,7 +307,7 @@ class Journal {
   std::optional<store::Log> log_;
   std::string unread_;  // why a file of earlier processes could not be read
   std::string damage_;
-  std::vector<Unsaid> unsaid_;  // in order
+  std::vector<PendingRecord> unsaid_;  // in order
   std::size_t unsaid_size_ = 0;
   std::size_t size_ = 0, snapshot_ = 0;  // bytes of the file, and of the last snapshot
   std::size_t least_ = kLeastTurn;

@@ -14,7 +14,7 @@ namespace ledger {
 
 /// The member at a path of pointers to members, and its name for people.
 template <auto first, auto... rest>
-struct Named {
+struct MemberPath {
   const char* name;
 
   auto& operator()(auto& of) const { return ((of.*first).*....*rest); }
@@ -27,21 +27,22 @@ struct Named {
 
 template <>
 inline constexpr auto store::kMembers<dispatch::Report> = [] {
-  using dispatch::Report, icd::ArtifactReport, ledger::Named;
-  return std::tuple(Named<&Report::number>{"number"}, Named<&Report::report, &ArtifactReport::type>{"type"},
-                    Named<&Report::report, &ArtifactReport::position, &icd::Point::x>{"x"},
-                    Named<&Report::report, &ArtifactReport::position, &icd::Point::y>{"y"},
-                    Named<&Report::report, &ArtifactReport::position, &icd::Point::z>{"z"},
-                    Named<&Report::report, &ArtifactReport::robot>{"robot"}, Named<&Report::sender>{"sender"},
-                    Named<&Report::received>{"received"}, Named<&Report::changed>{"changed"},
-                    Named<&Report::state>{"state"}, Named<&Report::note>{"note"}, Named<&Report::run>{"run"},
-                    Named<&Report::asked>{"asked"}, Named<&Report::same_as>{"same_as"},
-                    Named<&Report::tries>{"tries"}, Named<&Report::sending>{"sending"},
-                    Named<&Report::sent>{"sent"}, Named<&Report::before>{"before"},
-                    Named<&Report::status>{"status"}, Named<&Report::content_type>{"content_type"},
-                    Named<&Report::answer>{"answer"}, Named<&Report::reconciled>{"reconciled"},
-                    Named<&Report::beside>{"beside"}, Named<&Report::counted>{"counted"},
-                    Named<&Report::uncertain>{"uncertain"});
+  using dispatch::Report, icd::ArtifactReport, ledger::MemberPath;
+  return std::tuple(
+      MemberPath<&Report::number>{"number"}, MemberPath<&Report::report, &ArtifactReport::type>{"type"},
+      MemberPath<&Report::report, &ArtifactReport::position, &icd::Point::x>{"x"},
+      MemberPath<&Report::report, &ArtifactReport::position, &icd::Point::y>{"y"},
+      MemberPath<&Report::report, &ArtifactReport::position, &icd::Point::z>{"z"},
+      MemberPath<&Report::report, &ArtifactReport::robot>{"robot"}, MemberPath<&Report::sender>{"sender"},
+      MemberPath<&Report::received>{"received"}, MemberPath<&Report::changed>{"changed"},
+      MemberPath<&Report::state>{"state"}, MemberPath<&Report::note>{"note"}, MemberPath<&Report::run>{"run"},
+      MemberPath<&Report::asked>{"asked"}, MemberPath<&Report::same_as>{"same_as"},
+      MemberPath<&Report::tries>{"tries"}, MemberPath<&Report::sending>{"sending"},
+      MemberPath<&Report::sent>{"sent"}, MemberPath<&Report::before>{"before"},
+      MemberPath<&Report::status>{"status"}, MemberPath<&Report::content_type>{"content_type"},
+      MemberPath<&Report::answer>{"answer"}, MemberPath<&Report::reconciled>{"reconciled"},
+      MemberPath<&Report::beside>{"beside"}, MemberPath<&Report::counted>{"counted"},
+      MemberPath<&Report::uncertain>{"uncertain"});
 }();
 /// The members of `report` and of its position are among them.
 template <>
@@ -50,21 +51,23 @@ inline constexpr std::size_t store::kMemberCount<dispatch::Report> =
     icd::count_of_members<icd::Point>();
 template <>
 inline constexpr auto store::kMembers<dispatch::Run> = [] {
-  using dispatch::Run, ledger::Named;
-  return std::tuple(Named<&Run::number>{"number"}, Named<&Run::id>{"id"}, Named<&Run::began>{"began"},
-                    Named<&Run::why>{"why"}, Named<&Run::last>{"last"}, Named<&Run::heard>{"heard"},
-                    Named<&Run::post>{"post"}, Named<&Run::unreliable>{"unreliable"},
-                    Named<&Run::turn>{"turn"}, Named<&Run::may_be>{"may_be"},
-                    Named<&Run::status_clock>{"status_clock"}, Named<&Run::answer_clock>{"answer_clock"},
-                    Named<&Run::signs>{"signs"}, Named<&Run::name_trouble>{"name_trouble"});
+  using dispatch::Run, ledger::MemberPath;
+  return std::tuple(
+      MemberPath<&Run::number>{"number"}, MemberPath<&Run::id>{"id"}, MemberPath<&Run::began>{"began"},
+      MemberPath<&Run::why>{"why"}, MemberPath<&Run::last>{"last"}, MemberPath<&Run::heard>{"heard"},
+      MemberPath<&Run::post>{"post"}, MemberPath<&Run::unreliable>{"unreliable"},
+      MemberPath<&Run::turn>{"turn"}, MemberPath<&Run::may_be>{"may_be"},
+      MemberPath<&Run::status_clock>{"status_clock"}, MemberPath<&Run::answer_clock>{"answer_clock"},
+      MemberPath<&Run::signs>{"signs"}, MemberPath<&Run::name_trouble>{"name_trouble"});
 }();
 template <>
 inline constexpr auto store::kMembers<dispatch::Clock> = std::tuple(
-    ledger::Named<&dispatch::Clock::shows>{"shows"}, ledger::Named<&dispatch::Clock::runs>{"runs"});
+    ledger::MemberPath<&dispatch::Clock::shows>{"shows"}, ledger::MemberPath<&dispatch::Clock::runs>{"runs"});
 template <>
 inline constexpr auto store::kMembers<dispatch::Signs> = std::tuple(
-    ledger::Named<&dispatch::Signs::count>{"count"}, ledger::Named<&dispatch::Signs::clock>{"clock"},
-    ledger::Named<&dispatch::Signs::score>{"score"}, ledger::Named<&dispatch::Signs::name>{"name"});
+    ledger::MemberPath<&dispatch::Signs::count>{"count"},
+    ledger::MemberPath<&dispatch::Signs::clock>{"clock"},
+    ledger::MemberPath<&dispatch::Signs::score>{"score"}, ledger::MemberPath<&dispatch::Signs::name>{"name"});
 template <>
 inline constexpr auto store::kMembers<icd::RunStatus> =
     std::tuple(&icd::RunStatus::score, &icd::RunStatus::run_clock, &icd::RunStatus::remaining_reports,
@@ -86,7 +89,7 @@ using dispatch::Report;
 using dispatch::ReportState;
 using dispatch::Run;
 
-class Put : public store::Writer {
+class RecordWriter : public store::Writer {
  public:
   using store::Writer::operator();
   void operator()(ReportState state) { (*this)(dispatch::name_of(state)); }
@@ -169,11 +172,11 @@ std::string_view rest_of(std::string_view record) {
 }  // namespace
 
 std::string to_bytes(const Report& report, std::string_view more) {
-  return store::bytes_of<Put>(report).append(more);
+  return store::bytes_of<RecordWriter>(report).append(more);
 }
 
 std::string to_bytes(const Run& run, std::string_view more) {
-  return store::bytes_of<Put>(run).append(more);
+  return store::bytes_of<RecordWriter>(run).append(more);
 }
 
 std::optional<Report> report_in(std::string_view record) {
@@ -236,7 +239,7 @@ using store::Error;
 
 constexpr std::uint8_t kSteps = static_cast<std::uint8_t>(RecordKind::Steps);
 
-std::string doing(std::int64_t number) {
+std::string step_context(std::int64_t number) {
   return "recording a step of report " + std::to_string(number);
 }
 
@@ -268,7 +271,7 @@ bool Book::apply(std::uint8_t kind, std::string_view body) {
   highest_ = std::max(highest_, steps->highest);
   for (const Steps::Entry& entry : steps->reports) {
     const std::int64_t number = report_in(entry.report)->number;
-    Kept& kept = reports_[number];
+    StoredReport& kept = reports_[number];
     kept.record = entry.report;
     kept.history += entry.history;
     highest_ = std::max(highest_, number);
@@ -301,13 +304,13 @@ std::string Book::record_of(const Reports& reports, const Runs& runs) const {
 store::Result<std::string> Book::record(std::span<const Report> steps, const Run* run) const {
   Reports written;
   for (const Report& step : steps) {
-    Kept& kept = written[step.number];
+    StoredReport& kept = written[step.number];
     if (const auto known = reports_.find(step.number); kept.record.empty() && known != reports_.end())
       kept.record = known->second.record;
     if (step.number < 1 || !is_number(step))
-      return std::unexpected(Error{.what = doing(step.number) + ": a value is not a number"});
+      return std::unexpected(Error{.what = step_context(step.number) + ": a value is not a number"});
     if (!kept.record.empty() && !is_same(*report_in(kept.record), step))
-      return std::unexpected(Error{.what = doing(step.number) + ": another report has this number"});
+      return std::unexpected(Error{.what = step_context(step.number) + ": another report has this number"});
     kept.record = to_bytes(step, more_of_report(kept.record));
     kept.history += step_of(step);
   }
@@ -319,14 +322,14 @@ store::Result<std::string> Book::record(std::span<const Report> steps, const Run
   return record_of(written, runs);
 }
 
-store::Result<std::string> Book::record(const dispatch::TakeOver& taken, const Book& there) const {
+store::Result<std::string> Book::record(const dispatch::TakeoverChanges& taken, const Book& there) const {
   Reports reports;
   Runs runs;
   for (const dispatch::TakenOverReport& each : taken.reports) {
     const bool is_new = each.there != 0;
     const auto& from = is_new ? there.reports_ : reports_;
     const auto before = from.find(is_new ? each.there : each.report.number);
-    Kept& kept = reports[each.report.number];
+    StoredReport& kept = reports[each.report.number];
     if (before != from.end()) kept = before->second;
     if (!is_new) kept.history.clear();
     kept.record = to_bytes(each.report, more_of_report(kept.record));
@@ -360,8 +363,8 @@ std::vector<Step> Book::history(std::int64_t number) const {
   return kept == reports_.end() ? std::vector<Step>() : *steps_in(kept->second.history);
 }
 
-store::Result<Reading> read(const store::Contents& contents) {
-  Reading reading;
+store::Result<ReadResult> read(const store::Contents& contents) {
+  ReadResult reading;
   bool is_cut = false;  // a log is truncated, so the content of its end is unknown
   for (const store::Item& item : contents.items) {
     if (const auto* const gap = std::get_if<store::Gap>(&item)) {
@@ -414,7 +417,7 @@ std::string Book::salvage(double now, std::int64_t expected, bool end_is_lost) {
   for (Report report : all) {
     if (is_final(report)) continue;
     report.state = ReportState::InDoubt;
-    report.sent = std::max(report.sent, last_word());
+    report.sent = std::max(report.sent, last_heard());
     report.changed = now;
     report.note = kHeld;
     report.before.reset();
@@ -437,7 +440,7 @@ std::string Book::salvage(double now, std::int64_t expected, bool end_is_lost) {
   std::int64_t next = 1;
   const auto miss = [&](std::int64_t from, std::int64_t to) {
     const std::string lost = subject(from, to) + " lost from the ledger";
-    lose(to, lost + ": it may have been sent", now);
+    add_lost(to, lost + ": it may have been sent", now);
     missing += "; " + lost;
   };
   for (const Report& report : all) {  // a report that stands for others leaves no gap before it
@@ -448,7 +451,7 @@ std::string Book::salvage(double now, std::int64_t expected, bool end_is_lost) {
   if (end_is_lost) {
     next = highest_ + 1;
     const std::string lost = icd::sentence("reports may be missing from number ", next, " on");
-    lose((next / kNumbersKeptFree + 1) * kNumbersKeptFree, lost + ": they may have been sent", now);
+    add_lost((next / kNumbersKeptFree + 1) * kNumbersKeptFree, lost + ": they may have been sent", now);
     missing += "; " + lost;
   }
   return icd::sentence(all.size(), all.size() == 1 ? " report was read" : " reports were read", missing);
@@ -456,21 +459,21 @@ std::string Book::salvage(double now, std::int64_t expected, bool end_is_lost) {
 
 /// The last time at which a run was heard. A report whose steps are missing may have been sent later, so it
 /// may be of a run that began since.
-double Book::last_word() const {
+double Book::last_heard() const {
   double last = 0;
   for (const auto& [number, run] : runs_) last = std::max(last, run_in(run)->heard);
   return last;
 }
 
 void Book::put(const Report& report) {
-  Kept& kept = reports_[report.number];
+  StoredReport& kept = reports_[report.number];
   kept.record = to_bytes(report, more_of_report(kept.record));
   kept.history += step_of(report);
   highest_ = std::max(highest_, report.number);
 }
 
 /// Adds a report that stands for all lost ones up to this number.
-void Book::lose(std::int64_t last, const std::string& note, double now) {
+void Book::add_lost(std::int64_t last, const std::string& note, double now) {
   const std::vector<Run> all = runs();
   const auto present = std::ranges::max_element(all, {}, &Run::place);
   put({.number = last,
@@ -481,7 +484,7 @@ void Book::lose(std::int64_t last, const std::string& note, double now) {
        .state = ReportState::InDoubt,
        .note = note,
        .run = present->number,
-       .sent = last_word()});
+       .sent = last_heard()});
 }
 
 }  // namespace ledger

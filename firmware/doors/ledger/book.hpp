@@ -66,7 +66,7 @@ std::optional<Steps> steps_record_in(std::string_view record);
 /// The sum of a ledger's records: each report's last state with all its steps, and each run.
 class Book {
  public:
-  struct Kept {
+  struct StoredReport {
     std::string record, history;  // as in records (Steps)
   };
 
@@ -80,7 +80,7 @@ class Book {
   /// The record of these steps. Error: a step would replace another report, or a value is not a number.
   store::Result<std::string> record(std::span<const dispatch::Report> steps, const dispatch::Run* run) const;
   /// The record of a takeover from `there`.
-  store::Result<std::string> record(const dispatch::TakeOver& taken, const Book& there) const;
+  store::Result<std::string> record(const dispatch::TakeoverChanges& taken, const Book& there) const;
   bool knows(std::int64_t report) const { return reports_.contains(report); }
 
   std::vector<dispatch::Report> reports() const;  // oldest first
@@ -94,15 +94,15 @@ class Book {
   std::string salvage(double now, std::int64_t expected, bool end_is_lost);
 
  private:
-  using Reports = std::map<std::int64_t, Kept>;
+  using Reports = std::map<std::int64_t, StoredReport>;
   using Runs = std::map<std::int64_t, std::string>;
   /// One record of these reports and runs.
   std::string record_of(const Reports& reports, const Runs& runs) const;
   /// With members of a later version that the run has here.
   std::string encode_with_unknown(const dispatch::Run& run) const;
-  double last_word() const;
+  double last_heard() const;
   void put(const dispatch::Report& report);
-  void lose(std::int64_t last, const std::string& note, double now);
+  void add_lost(std::int64_t last, const std::string& note, double now);
 
   Reports reports_;
   Runs runs_;
@@ -111,12 +111,12 @@ class Book {
 };
 
 /// The content of a log.
-struct Reading {
+struct ReadResult {
   Book book;
   std::string gap = "";      // a sentence about missing records, or ""
   bool end_is_lost = false;  // the last records are missing
 };
 /// Error: a later version wrote a record that this one must understand.
-store::Result<Reading> read(const store::Contents& contents);
+store::Result<ReadResult> read(const store::Contents& contents);
 
 }  // namespace adit::ledger

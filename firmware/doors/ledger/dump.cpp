@@ -17,7 +17,7 @@ namespace {
 using codec::json;
 using codec::Value;
 
-void put_more(Value& shown, std::string_view more) {
+void add_unknown_bytes(Value& shown, std::string_view more) {
   if (!more.empty()) std::get<Value::Object>(shown.is).emplace_back("unknown_bytes", json(more.size()));
 }
 
@@ -29,7 +29,7 @@ Value to_value(const Steps::Entry& entry) {
     history.push_back(
         {Value::Object{{"at", json(step.at)}, {"state", json(step.state)}, {"note", json(step.note)}}});
   std::get<Value::Object>(report.is).emplace_back("history", Value{std::move(history)});
-  put_more(report, more_of_report(entry.report));
+  add_unknown_bytes(report, more_of_report(entry.report));
   return report;
 }
 
@@ -38,7 +38,7 @@ void put(Value::Object& line, const Steps& steps) {
   for (const Steps::Entry& entry : steps.reports) reports.push_back(to_value(entry));
   for (const std::string_view record : steps.runs) {
     Value run = ledger::to_value(*run_in(record));
-    put_more(run, more_of_run(record));
+    add_unknown_bytes(run, more_of_run(record));
     runs.push_back(std::move(run));
   }
   line.emplace_back("highest", json(steps.highest));

@@ -176,7 +176,7 @@ std::function<Result<void>()> Ledger::upkeep() {
   };
 }
 
-void Ledger::upkeep_done(const Result<void>& done) {
+void Ledger::on_upkeep_done(const Result<void>& done) {
   is_under_way_ = false;
   if (!done) return;
   snapshot_ = next_snapshot_;
@@ -226,7 +226,7 @@ Result<void> Ledger::take_over(const std::string& copy, const dispatch::Handover
   if (!there.apply(static_cast<std::uint8_t>(RecordKind::Steps), copy))
     return std::unexpected(Error{.what = "it is no copy of a ledger"});
   const Book& here = book_;
-  const dispatch::TakeOver taken =
+  const dispatch::TakeoverChanges taken =
       dispatch::take_over({here.reports(), here.runs()}, {there.reports(), there.runs()}, handover);
   const auto record = ADIT_TRY(here.record(taken, there));
   return append(record, dispatch::Flush::Now, true);

@@ -56,15 +56,15 @@ class KnownFile {
 };
 
 /// Tells running upkeep to stop, at the latest when it is destroyed.
-class Enough {
+class StopSource {
  public:
-  Enough() = default;
-  Enough(Enough&& other) noexcept : flag(std::move(other.flag)) {}
-  Enough& operator=(Enough&& other) noexcept {
+  StopSource() = default;
+  StopSource(StopSource&& other) noexcept : flag(std::move(other.flag)) {}
+  StopSource& operator=(StopSource&& other) noexcept {
     flag.swap(other.flag);
     return *this;
   }
-  ~Enough() { set(); }
+  ~StopSource() { set(); }
   void set() {
     if (flag) *flag = true;
   }
@@ -76,7 +76,7 @@ class Enough {
 /// README.md). A successful write is on disk; a failed one has no effect.
 class Ledger {
  public:
-  static constexpr store::Keeping kKeeping{store::kOnDisk, 4u << 20, true};
+  static constexpr store::LogOptions kKeeping{store::kOnDisk, 4u << 20, true};
   static constexpr const char* kDirectory = "ledger";       // below the state directory
   static constexpr const char* kMemory = "ledger-on-disk";  // below the runtime directory
   /// Bytes that a new report must leave in the file for steps of the known reports.
@@ -134,10 +134,10 @@ class Ledger {
   /// Facts to store elsewhere, never less than open() was given.
   LedgerFacts known_facts() const;
 
-  /// Due work for another thread: a snapshot or a spare file. Null: no work. Call upkeep_done() with its
+  /// Due work for another thread: a snapshot or a spare file. Null: no work. Call on_upkeep_done() with its
   /// result before the next call.
   std::function<Result<void>()> upkeep();
-  void upkeep_done(const Result<void>& done);
+  void on_upkeep_done(const Result<void>& done);
   /// Makes running work stop early, without effect.
   void end_upkeep() { enough_.set(); }
 
@@ -160,7 +160,7 @@ class Ledger {
   bool is_under_way_ = false;                       // upkeep is running
   std::uint64_t snapshot_ = 0, next_snapshot_ = 0;  // first log after the last snapshot
   std::uint64_t spare_ = 0, next_spare_ = 0;        // the log with a spare file
-  Enough enough_;
+  StopSource enough_;
 };
 
 }  // namespace adit::ledger

@@ -34,17 +34,17 @@ void log_exception(const char* where, const char* what) noexcept {
   std::fprintf(stderr, "%s: unhandled exception: %s\n", where, what);
 }
 
-std::uint64_t caught_so_far() noexcept {
+std::uint64_t exception_count() noexcept {
   return so_far.load(std::memory_order_relaxed);
 }
 
-void tell_of_caught(void (*told)(const char* where, const char* what)) noexcept {
+void set_exception_logger(void (*told)(const char* where, const char* what)) noexcept {
   tell.store(told);
 }
 
 void end_by_uncaught() noexcept {
   std::set_terminate([] {
-    tell_of_caught(nullptr);  // stderr only: this thread may hold the log's lock
+    set_exception_logger(nullptr);  // stderr only: this thread may hold the log's lock
     if (const auto thrown = std::current_exception())
       run_guarded("the process", [&] { std::rethrow_exception(thrown); });
     count_fault();

@@ -8,16 +8,16 @@
 namespace adit::loop {
 
 /// Counts an exception that no code of the program handled, and reports it to the function of
-/// tell_of_caught(), or to stderr if there is no such function or it throws. `where`: the aborted work, as in
-/// "a job of a worker". Thread-safe.
+/// set_exception_logger(), or to stderr if there is no such function or it throws. `where`: the aborted work,
+/// as in "a job of a worker". Thread-safe.
 void log_exception(const char* where, const char* what) noexcept;
 
 /// The number of calls of log_exception() since the process start. Thread-safe.
-std::uint64_t caught_so_far() noexcept;
+std::uint64_t exception_count() noexcept;
 
 /// Sets the function that reports such exceptions. It is called on the thread that caught the exception, and
 /// may throw. Null: stderr. Thread-safe.
-void tell_of_caught(void (*told)(const char* where, const char* what)) noexcept;
+void set_exception_logger(void (*told)(const char* where, const char* what)) noexcept;
 
 /// From now on an exception that leaves a callback of the loop or a noexcept function ends the process with
 /// status 1, after a line on stderr. Accepted messages are on disk, and the next start reads them.

@@ -173,12 +173,12 @@ void Loop::set_wall(double now) {
 double Loop::wall_offset() const {
   return impl_->wall.offset();
 }
-double Loop::look_at_wall(bool system_is_right) {
+double Loop::check_wall_clock(bool system_is_right) {
   const Instant before = now();
   const double system = system_now();
   const Instant after = now();
   // The thread was paused between the two readings; the next second's call decides.
-  return after - before > kReadTogether ? 0 : impl_->wall.look(system, after, system_is_right);
+  return after - before > kReadTogether ? 0 : impl_->wall.update(system, after, system_is_right);
 }
 
 Source Loop::watch(int fd, std::uint32_t events, std::function<void(std::uint32_t)> ready) {

@@ -8,9 +8,9 @@
 
 namespace adit::loop {
 
-/// The time of day of the program: the system's clock plus a correction if that clock is wrong. look() drops
-/// the correction if the system's clock was set or is right. The caller of look() can then correct earlier
-/// times. Reads no clock.
+/// The time of day of the program: the system's clock plus a correction if that clock is wrong. update()
+/// drops the correction if the system's clock was set or is right. The caller of update() can then correct
+/// earlier times. Reads no clock.
 class WallClock {
  public:
   using Instant = std::chrono::steady_clock::time_point;
@@ -18,18 +18,18 @@ class WallClock {
   /// the time between two readings.
   static constexpr double kSet = 0.01;
 
-  /// `system`: seconds since 1970 by the system's clock at the monotonic time `at`; so in look().
+  /// `system`: seconds since 1970 by the system's clock at the monotonic time `at`; so in update().
   WallClock(double system, Instant at) : seen_(system), seen_at_(at) {}
 
   double now(Instant at) const { return seen_ + seconds(at) + ahead_; }
   /// Seconds by which now() is ahead of the system's clock.
   double offset() const { return ahead_; }
-  /// Makes now() return `now` at `at`, until look() drops the correction.
+  /// Makes now() return `now` at `at`, until update() drops the correction.
   void set(double now, Instant at) { ahead_ += now - this->now(at); }
 
   /// Returns the seconds by which now() steps; 0: no step. `is_right`: the system's clock is right, so drop
   /// the correction. Call this each second.
-  double look(double system, Instant at, bool is_right) {
+  double update(double system, Instant at, bool is_right) {
     const double step = system - seen_ - seconds(at), before = ahead_;
     const bool gives_way = is_right && before != 0;
     if (std::abs(step) < kSet && !gives_way) return 0;
@@ -96,14 +96,14 @@ class Loop {
 
   /// The time of day for people: seconds since 1970.
   double wall_now() const;
-  /// Sets the time of day to `now`, because the system's clock is wrong. This holds until look_at_wall()
+  /// Sets the time of day to `now`, because the system's clock is wrong. This holds until check_wall_clock()
   /// finds that the system's clock was set or is right.
   void set_wall(double now);
   /// Seconds by which wall_now() is ahead of the system's clock.
   double wall_offset() const;
   /// Checks whether the system's clock was set. Returns the seconds by which wall_now() steps.
   /// `system_is_right`: drop the correction of set_wall(). Call this each second.
-  double look_at_wall(bool system_is_right);
+  double check_wall_clock(bool system_is_right);
 
   /// Calls `ready` with the EPOLL* events of `fd`. The caller keeps `fd`.
   Source watch(int fd, std::uint32_t events, std::function<void(std::uint32_t)> ready);

@@ -30,7 +30,7 @@ class Watchdog {
   void watch_workers(std::vector<Workers*> workers);
 
  private:
-  void look();
+  void check();
   void ask();
 
   Loop& loop_;
@@ -51,7 +51,7 @@ class JobWatch {
   void end() { due_.cancel(); }
 
  private:
-  void look();
+  void check();
 
   Loop& loop_;
   const std::function<void()> overruns_;

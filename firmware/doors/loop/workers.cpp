@@ -53,12 +53,13 @@ class SignalsBlocked {
 
 class Workers::Impl {
  public:
-  Impl(Loop& loop, unsigned count, AtEnd at_end)
+  Impl(Loop& loop, unsigned count, ShutdownPolicy at_end)
       : loop_(loop), at_end_(at_end), jobs_(threads_for(count)), lives_(threads_for(count)) {
     const SignalsBlocked blocked;
-    for (Life& life : lives_) {
+    for (WorkerState& life : lives_) {
       threads_.emplace_back([this, &life] { serve(life); });
-      pthread_setname_np(threads_.back().native_handle(), at_end == AtEnd::Finish ? "writer" : "worker");
+      pthread_setname_np(threads_.back().native_handle(),
+                         at_end == ShutdownPolicy::Finish ? "writer" : "worker");
     }
   }
 
@@ -73,7 +74,7 @@ class Workers::Impl {
     {
       const std::lock_guard lock(mutex_);
       stopping_ = true;
-      if (at_end_ == AtEnd::Drop) jobs_.hand_over_to(dropped);
+      if (at_end_ == ShutdownPolicy::Drop) jobs_.hand_over_to(dropped);
     }
     came_.notify_all();
     for (auto& thread : threads_) thread.join();
@@ -90,14 +91,14 @@ class Workers::Impl {
   }
 
   void give_way() {
-    Life& life = *of_this_thread_;
+    WorkerState& life = *of_this_thread_;
     const Instant since = loop_.now();
     bool gave = false;
     while (auto job = take_amid(life, since)) {
       run(*job);
       gave = true;
     }
-    if (gave) goes_on(life);
+    if (gave) restart_timer(life);
   }
 
   void ask() {
@@ -107,28 +108,28 @@ class Workers::Impl {
     }
     came_.notify_all();
   }
-  bool are_well(Duration longest) {
+  bool are_responsive(Duration longest) {
     const Instant now = loop_.now();
     const std::lock_guard lock(mutex_);
-    return std::ranges::all_of(lives_, [&](const Life& life) {
+    return std::ranges::all_of(lives_, [&](const WorkerState& life) {
       return life.answered == asked_ || (life.at_work && now - life.began <= longest);
     });
   }
 
  private:
   /// The callbacks after a job. Only the loop calls and frees them; the worker sets `well`.
-  struct Ends {
+  struct JobCallbacks {
     std::function<void()> done, failed;
     bool well = false;
   };
   struct Job {
     std::function<void()> work;
     std::function<void()> end;
-    Ends* ends = nullptr;  // owned by `end`
+    JobCallbacks* ends = nullptr;  // owned by `end`
   };
 
-  Job job_of(std::function<void()> work, Ends ends) const {
-    const auto held = std::make_shared<Ends>(std::move(ends));
+  Job job_of(std::function<void()> work, JobCallbacks ends) const {
+    const auto held = std::make_shared<JobCallbacks>(std::move(ends));
     return {std::move(work),
             [alive = alive_, held] {
               if (*alive) (held->well ? held->done : held->failed)();
@@ -137,15 +138,15 @@ class Workers::Impl {
   }
 
   /// The state of a worker.
-  struct Life {
+  struct WorkerState {
     std::uint64_t answered = 0;  // the last ask() that it has seen
     bool at_work = false;
     Instant began{};  // when its job began or continued
   };
 
-  void serve(Life& life) noexcept {
+  void serve(WorkerState& life) noexcept {
     of_this_thread_ = &life;
-    if (at_end_ == AtEnd::Drop) lower_priority();
+    if (at_end_ == ShutdownPolicy::Drop) lower_priority();
     while (auto next = wait_for_next(life)) {
       run(next->job);
       const std::lock_guard lock(mutex_);
@@ -154,7 +155,7 @@ class Workers::Impl {
   }
 
   /// nullopt: the Workers stop.
-  std::optional<JobQueue<Job>::Next> wait_for_next(Life& life) {
+  std::optional<JobQueue<Job>::NextJob> wait_for_next(WorkerState& life) {
     std::unique_lock lock(mutex_);
     life.at_work = false;
     life.answered = asked_;
@@ -169,11 +170,11 @@ class Workers::Impl {
     return next;
   }
 
-  std::optional<Job> take_amid(Life& life, Instant since) {
+  std::optional<Job> take_amid(WorkerState& life, Instant since) {
     const std::lock_guard lock(mutex_);
     return jobs_.pop_amid(life.began, since, loop_.now());
   }
-  void goes_on(Life& life) {
+  void restart_timer(WorkerState& life) {
     const std::lock_guard lock(mutex_);
     life.began = loop_.now();
   }
@@ -185,21 +186,21 @@ class Workers::Impl {
   }
 
   Loop& loop_;
-  const AtEnd at_end_;
+  const ShutdownPolicy at_end_;
   const std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  // read and written on the loop only
   std::mutex mutex_;
   std::condition_variable came_;
   JobQueue<Job> jobs_;
   bool stopping_ = false;
   std::uint64_t asked_ = 0;
-  std::vector<Life> lives_;  // one for each thread
-  static thread_local Life* of_this_thread_;
+  std::vector<WorkerState> lives_;  // one for each thread
+  static thread_local WorkerState* of_this_thread_;
   std::vector<std::thread> threads_;
 };
 
-thread_local Workers::Impl::Life* Workers::Impl::of_this_thread_ = nullptr;
+thread_local Workers::Impl::WorkerState* Workers::Impl::of_this_thread_ = nullptr;
 
-Workers::Workers(Loop& loop, unsigned count, AtEnd at_end)
+Workers::Workers(Loop& loop, unsigned count, ShutdownPolicy at_end)
     : impl_(std::make_unique<Impl>(loop, count, at_end)) {}
 Workers::~Workers() {
   impl_->end();
@@ -219,8 +220,8 @@ void Workers::give_way() {
 void Workers::ask() {
   impl_->ask();
 }
-bool Workers::are_well(Duration longest) const {
-  return impl_->are_well(longest);
+bool Workers::are_responsive(Duration longest) const {
+  return impl_->are_responsive(longest);
 }
 
 }  // namespace adit::loop

@@ -33,7 +33,7 @@ class JobQueue {
   /// A CanWait job runs for this long before it gives way to OnTheWay jobs.
   static constexpr std::chrono::milliseconds kTurn{10};
 
-  struct Next {
+  struct NextJob {
     Job job;
     Urgency urgency = Urgency::OnTheWay;
   };
@@ -50,17 +50,17 @@ class JobQueue {
 
   /// The next job for an idle worker. nullopt if no job is queued, or if only CanWait jobs are queued and
   /// enough workers run such jobs.
-  std::optional<Next> pop(Instant now) {
+  std::optional<NextJob> pop(Instant now) {
     const bool may_wait = !can_wait_.empty() && at_work_ < most_that_can_wait_;
-    if (may_wait && (on_the_way_.empty() || has_waited_long(now))) {
-      Next next{std::move(can_wait_.front().job), Urgency::CanWait};
+    if (may_wait && (on_the_way_.empty() || is_overdue(now))) {
+      NextJob next{std::move(can_wait_.front().job), Urgency::CanWait};
       can_wait_.pop_front();
       ++at_work_;
       return next;
     }
     auto job = pop_shared();
     if (!job) return std::nullopt;
-    return Next{std::move(*job), Urgency::OnTheWay};
+    return NextJob{std::move(*job), Urgency::OnTheWay};
   }
 
   /// The OnTheWay job to run within a CanWait job that has run since `began` and has given way since `since`.
@@ -87,7 +87,7 @@ class JobQueue {
   std::size_t size() const { return on_the_way_.size() + can_wait_.size(); }
 
  private:
-  struct Patient {
+  struct WaitingJob {
     Job job;
     Instant came{};
   };
@@ -98,14 +98,14 @@ class JobQueue {
     on_the_way_.pop_front();
     return job;
   }
-  bool has_waited_long(Instant now) const {
+  bool is_overdue(Instant now) const {
     return now - std::max(can_wait_.front().came, last_ended_) >= kPatience;
   }
 
   const std::size_t most_that_can_wait_;
   std::size_t at_work_ = 0;  // running CanWait jobs
   std::deque<Job> on_the_way_;
-  std::deque<Patient> can_wait_;
+  std::deque<WaitingJob> can_wait_;
   Instant last_ended_{};  // of a CanWait job
 };
 
@@ -115,7 +115,7 @@ class JobQueue {
 class Workers {
  public:
   /// `count`: threads; 0: one fewer than the machine's cores, at least one.
-  Workers(Loop& loop, unsigned count) : Workers(loop, count, AtEnd::Drop) {}
+  Workers(Loop& loop, unsigned count) : Workers(loop, count, ShutdownPolicy::Drop) {}
   /// Waits for running jobs. Drops queued jobs. `done` and `failed` are not called any more.
   ~Workers();
   Workers(const Workers&) = delete;
@@ -135,12 +135,12 @@ class Workers {
   /// Asks each worker for a sign of life. Workers answer between jobs.
   void ask();
   /// True if each worker has answered the last ask(), or has run its present job for at most `longest`.
-  bool are_well(Duration longest) const;
+  bool are_responsive(Duration longest) const;
 
  protected:
   /// What happens to jobs that have not started.
-  enum class AtEnd : std::uint8_t { Drop, Finish };
-  Workers(Loop& loop, unsigned count, AtEnd at_end);
+  enum class ShutdownPolicy : std::uint8_t { Drop, Finish };
+  Workers(Loop& loop, unsigned count, ShutdownPolicy at_end);
 
  private:
   class Impl;
@@ -152,7 +152,7 @@ class Workers {
 /// `done`. Data that a job uses must outlive the Writer.
 class Writer final : public Workers {
  public:
-  explicit Writer(Loop& loop) : Workers(loop, 1, AtEnd::Finish) {}
+  explicit Writer(Loop& loop) : Workers(loop, 1, ShutdownPolicy::Finish) {}
 
   void submit(std::function<void()> work, std::function<void()> done, std::function<void()> failed) {
     Workers::submit(Urgency::OnTheWay, std::move(work), std::move(done), std::move(failed));

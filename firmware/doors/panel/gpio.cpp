@@ -45,7 +45,7 @@ class GpioLines final : public Lines {
       const auto& output = outputs_[index_of(light)];
       if (!output || output->set(lit[index_of(light)]) == 0) continue;
       if (result)
-        result = trouble(describe_line(settings_, line_of(settings_, light), name_of(light)), errno);
+        result = panel_error(describe_line(settings_, line_of(settings_, light), name_of(light)), errno);
     }
     return result;
   }
@@ -65,7 +65,7 @@ class GpioButton final : public ButtonLine {
   /// Uses the level, not the edges, because the kernel drops edges during a long bounce.
   std::expected<bool, std::string> is_pressed() override {
     const int value = line_->drop_edges() < 0 ? -1 : line_->get();
-    if (value < 0) return trouble(about_, errno);
+    if (value < 0) return panel_error(about_, errno);
     return value == 1;
   }
 
@@ -76,7 +76,7 @@ class GpioButton final : public ButtonLine {
 
 }  // namespace
 
-std::unexpected<std::string> trouble(const std::string& about, int error) {
+std::unexpected<std::string> panel_error(const std::string& about, int error) {
   return std::unexpected("panel: " + about + ": " + std::system_category().message(error));
 }
 

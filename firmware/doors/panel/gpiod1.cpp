@@ -22,30 +22,30 @@ struct CloseChip {
 };
 using Chip = std::unique_ptr<gpiod_chip, CloseChip>;
 
-struct Found {
+struct FoundLine {
   Chip chip;  // outlives the line
   gpiod_line* line = nullptr;
 };
 
-std::expected<Found, std::string> find(const GpioRequest& wanted) {
+std::expected<FoundLine, std::string> find(const GpioRequest& wanted) {
   errno = 0;
   if (wanted.chip.empty()) {
     // Opens the chip, which the caller then owns.
     gpiod_line* const line = gpiod_line_find(wanted.line.c_str());
-    if (line == nullptr) return trouble(wanted.about, gpio_error());
-    return Found{Chip(gpiod_line_get_chip(line)), line};
+    if (line == nullptr) return panel_error(wanted.about, gpio_error());
+    return FoundLine{Chip(gpiod_line_get_chip(line)), line};
   }
   Chip chip(gpiod_chip_open_lookup(wanted.chip.c_str()));
-  if (!chip) return trouble("chip " + wanted.chip, gpio_error());
+  if (!chip) return panel_error("chip " + wanted.chip, gpio_error());
   errno = 0;
   gpiod_line* const line = gpiod_chip_find_line(chip.get(), wanted.line.c_str());
-  if (line == nullptr) return trouble(wanted.about, gpio_error());
-  return Found{std::move(chip), line};
+  if (line == nullptr) return panel_error(wanted.about, gpio_error());
+  return FoundLine{std::move(chip), line};
 }
 
 class Line final : public GpioLine {
  public:
-  explicit Line(Found found) : found_(std::move(found)) {}
+  explicit Line(FoundLine found) : found_(std::move(found)) {}
   Line(const Line&) = delete;
   Line& operator=(const Line&) = delete;
   ~Line() override { gpiod_line_release(found_.line); }
@@ -64,7 +64,7 @@ class Line final : public GpioLine {
   }
 
  private:
-  Found found_;
+  FoundLine found_;
 };
 
 }  // namespace
@@ -80,7 +80,7 @@ std::expected<std::unique_ptr<GpioLine>, std::string> request_line(const GpioReq
     return gpiod_line_request_both_edges_events_flags(found.line, consumer, flags) == 0;
   };
   const bool is_pulled = !wanted.is_output && request(level | pull);
-  if (!is_pulled && !request(level)) return trouble(wanted.about, errno);  // some chips have no pull
+  if (!is_pulled && !request(level)) return panel_error(wanted.about, errno);  // some chips have no pull
   return std::make_unique<Line>(std::move(found));
 }
 

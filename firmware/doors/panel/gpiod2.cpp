@@ -14,15 +14,15 @@ namespace adit::panel {
 namespace {
 
 template <auto Free>
-struct FreeBy {
+struct Deleter {
   void operator()(auto* object) const { Free(object); }
 };
 template <typename Object, auto Free>
-using Owned = std::unique_ptr<Object, FreeBy<Free>>;
+using Owned = std::unique_ptr<Object, Deleter<Free>>;
 using Chip = Owned<gpiod_chip, gpiod_chip_close>;
 using Request = Owned<gpiod_line_request, gpiod_line_request_release>;
 
-struct Found {
+struct FoundLine {
   Chip chip;
   unsigned offset = 0;
 };
@@ -33,36 +33,36 @@ std::expected<std::vector<std::string>, std::string> chip_paths(const std::strin
   const int failed = glob("/dev/gpiochip*", GLOB_ERR, nullptr, &found);
   std::vector<std::string> paths(found.gl_pathv, found.gl_pathv + found.gl_pathc);
   globfree(&found);
-  if (failed != 0 && failed != GLOB_NOMATCH) return trouble(about + ": /dev", errno);
+  if (failed != 0 && failed != GLOB_NOMATCH) return panel_error(about + ": /dev", errno);
   return paths;
 }
 
 /// A chip that cannot be read is an error only if the line is not found on another chip.
-std::expected<Found, std::string> find(const GpioRequest& wanted) {
+std::expected<FoundLine, std::string> find(const GpioRequest& wanted) {
   const bool is_any = wanted.chip.empty(), is_path = wanted.chip.starts_with('/');
   const std::string about = is_any ? wanted.about : "chip " + wanted.chip;
   const auto paths = is_path ? std::vector{wanted.chip} : ADIT_TRY(chip_paths(about));
-  auto failure = trouble(about, ENOENT);
+  auto failure = panel_error(about, ENOENT);
   for (const std::string& path : paths) {
     Chip chip(gpiod_chip_open(path.c_str()));
     const Owned<gpiod_chip_info, gpiod_chip_info_free> info(chip ? gpiod_chip_get_info(chip.get()) : nullptr);
     if (!info) {
-      failure = trouble(is_path ? about : about + ": " + path, errno);
+      failure = panel_error(is_path ? about : about + ": " + path, errno);
       continue;
     }
     const bool is_named = is_path || wanted.chip == gpiod_chip_info_get_name(info.get()) ||
                           wanted.chip == gpiod_chip_info_get_label(info.get());
     if (!is_named && !is_any) continue;
     const int offset = gpiod_chip_get_line_offset_from_name(chip.get(), wanted.line.c_str());
-    if (offset >= 0) return Found{std::move(chip), static_cast<unsigned>(offset)};
-    if (!is_any) return trouble(wanted.about, errno);
-    if (errno != ENOENT) failure = trouble(about + ": " + path, errno);
+    if (offset >= 0) return FoundLine{std::move(chip), static_cast<unsigned>(offset)};
+    if (!is_any) return panel_error(wanted.about, errno);
+    if (errno != ENOENT) failure = panel_error(about + ": " + path, errno);
   }
   return failure;
 }
 
 /// Sets errno and returns null if it fails.
-Request request(const Found& found, const GpioRequest& wanted, gpiod_line_bias bias) {
+Request request(const FoundLine& found, const GpioRequest& wanted, gpiod_line_bias bias) {
   const Owned<gpiod_line_settings, gpiod_line_settings_free> settings(gpiod_line_settings_new());
   const Owned<gpiod_line_config, gpiod_line_config_free> lines(gpiod_line_config_new());
   const Owned<gpiod_request_config, gpiod_request_config_free> options(gpiod_request_config_new());
@@ -111,7 +111,7 @@ std::expected<std::unique_ptr<GpioLine>, std::string> request_line(const GpioReq
     line = request(found, wanted, wanted.active_low ? GPIOD_LINE_BIAS_PULL_UP : GPIOD_LINE_BIAS_PULL_DOWN);
   }
   if (!line) line = request(found, wanted, GPIOD_LINE_BIAS_AS_IS);  // some chips have no pull
-  if (!line) return trouble(wanted.about, errno);
+  if (!line) return panel_error(wanted.about, errno);
   return std::make_unique<Line>(std::move(line), found.offset);
 }
 

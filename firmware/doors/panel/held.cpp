@@ -88,7 +88,7 @@ class ReopenedButton final : public ButtonLine {
     if (is_time() && !line_) reopen();
     if (!line_) return std::unexpected(why_);
     auto level = line_->is_pressed();
-    if (!level) let_go(level.error());
+    if (!level) close_line(level.error());
     return level;
   }
 
@@ -98,7 +98,7 @@ class ReopenedButton final : public ButtonLine {
     return read(timer_.get(), &times, sizeof times) == sizeof times;
   }
 
-  void let_go(const std::string& why) {
+  void close_line(const std::string& why) {
     epoll_ctl(epoll_.get(), EPOLL_CTL_DEL, line_->descriptor(), nullptr);
     line_.reset();
     why_ = why;
@@ -114,7 +114,7 @@ class ReopenedButton final : public ButtonLine {
     if (epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, (*opened)->descriptor(), &wanted) == 0) {
       line_ = std::move(*opened);
     } else {
-      why_ = trouble(kNotWatched, errno).error();
+      why_ = panel_error(kNotWatched, errno).error();
     }
   }
 
@@ -146,7 +146,7 @@ std::expected<std::unique_ptr<ButtonLine>, std::string> reopened_button(OpenButt
   loop::FileDescriptor epoll(epoll_create1(EPOLL_CLOEXEC)), timer = timer_of(pace);
   epoll_event wanted{.events = EPOLLIN, .data = {}};
   if (!epoll || !timer || epoll_ctl(epoll.get(), EPOLL_CTL_ADD, timer.get(), &wanted) != 0)
-    return trouble(kNotWatched, errno);
+    return panel_error(kNotWatched, errno);
   return std::make_unique<ReopenedButton>(std::move(open), std::move(epoll), std::move(timer));
 }
 
@@ -175,8 +175,8 @@ std::expected<std::unique_ptr<ButtonLine>, std::string> hold_button(const settin
 
 }  // namespace
 
-Held hold(const settings::Panel& settings, const std::string& consumer, const std::string& simulated,
-          const std::function<void(const std::string&)>& complain) {
+PanelDevices hold(const settings::Panel& settings, const std::string& consumer, const std::string& simulated,
+                  const std::function<void(const std::string&)>& complain) {
   auto button = hold_button(settings, consumer, simulated);
   if (!button) complain("cannot use the button: " + button.error());
   return {hold_lines(settings, consumer, simulated), button ? std::move(*button) : nullptr};

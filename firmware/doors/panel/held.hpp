@@ -29,7 +29,7 @@ std::expected<std::unique_ptr<ButtonLine>, std::string> reopened_button(
     std::chrono::milliseconds pace = kReopen);
 
 /// The lights and the button of a panel.
-struct Held {
+struct PanelDevices {
   std::unique_ptr<Lines> lines;        // null: there are none
   std::unique_ptr<ButtonLine> button;  // null: there is none
 };
@@ -38,16 +38,16 @@ struct Held {
 /// not available yet are opened again; until then set() and is_pressed() fail. `complain` gets an error of
 /// the button. `simulated` is the file of a simulated panel; "": there is none. Its lights stand in for lines
 /// that cannot be opened. Its button, `simulated`.button, is used only if `settings` names no line at all.
-Held hold(const settings::Panel& settings, const std::string& consumer, const std::string& simulated,
-          const std::function<void(const std::string&)>& complain);
+PanelDevices hold(const settings::Panel& settings, const std::string& consumer, const std::string& simulated,
+                  const std::function<void(const std::string&)>& complain);
 
 /// Lights and button held by adit-panel at `socket`. adit-panel ignores `settings` if its board names a
 /// panel. set() reconnects if there is no connection. It fails after half a minute without a connection, or
 /// if adit-panel has reported a failure of the lights. is_pressed() receives these reports. A button that is
 /// held while connecting counts as not pressed until it is released. A press is cancelled if the connection
 /// is lost or adit-panel cannot read the button. `announced`: a connection by announce().
-std::expected<Held, std::string> remote(const std::string& socket, const settings::Panel& settings,
-                                        loop::FileDescriptor announced = {});
+std::expected<PanelDevices, std::string> remote(const std::string& socket, const settings::Panel& settings,
+                                                loop::FileDescriptor announced = {});
 
 /// Connects to adit-panel before the lights are known. If the program ends before it sets lights, adit-panel
 /// shows the fault. Empty if it does not answer.

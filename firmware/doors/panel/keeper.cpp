@@ -29,27 +29,27 @@ const Lights& fault_lights() {
 
 }  // namespace
 
-void Watched::enter(Phase phase, Instant now) {
+void HeartbeatMonitor::enter(Phase phase, Instant now) {
   phase_ = phase;
   since_ = now;
 }
 
 /// After a death the fault shows until the next aditd sends lights.
-void Watched::on_came(Instant now) {
+void HeartbeatMonitor::on_contact(Instant now) {
   if (phase_ == Phase::Awaited || phase_ == Phase::Ended) enter(Phase::Awaited, now);
 }
 
-void Watched::on_lights(const Lit& lit, Instant now) {
+void HeartbeatMonitor::on_lights(const Lit& lit, Instant now) {
   enter(Phase::Well, now);
   lit_ = lit;
 }
 
-void Watched::on_gone(Instant now) {
+void HeartbeatMonitor::on_gone(Instant now) {
   if (phase_ == Phase::Ended || phase_ == Phase::Dead) return;
   enter(Phase::Dead, fault_start(now).value_or(now));
 }
 
-std::optional<Instant> Watched::fault_start(Instant now) const {
+std::optional<Instant> HeartbeatMonitor::fault_start(Instant now) const {
   const auto since = [&](Instant then) { return now >= then ? std::optional(then) : std::nullopt; };
   switch (phase_) {
     case Phase::Awaited:
@@ -64,7 +64,7 @@ std::optional<Instant> Watched::fault_start(Instant now) const {
   return std::nullopt;
 }
 
-Frame Watched::frame(Instant now) const {
+Frame HeartbeatMonitor::frame(Instant now) const {
   if (const auto fault = fault_start(now)) return frame_of(fault_lights(), milliseconds_between(*fault, now));
   switch (phase_) {
     case Phase::Awaited:
@@ -85,7 +85,7 @@ constexpr int kHeardAtOnce = 64;  // messages at once, so that a flood of messag
 }  // namespace
 
 Keeper::Keeper(loop::Loop& loop, loop::FileDescriptor listening, std::optional<settings::Panel> boards,
-               World world)
+               Callbacks world)
     : loop_(loop),
       world_(std::move(world)),
       watched_(loop.now()),
@@ -101,20 +101,20 @@ Keeper::Keeper(loop::Loop& loop, loop::FileDescriptor listening, std::optional<s
 void Keeper::accept() {
   auto caller = accepted_at(listening_);
   if (!caller) return;
-  if (client_) lose();
+  if (client_) disconnect();
   client_ = Client{.socket = std::move(caller), .owns_press = !pressed_.value_or(false)};
-  client_->messages = loop_.watch(client_->socket.get(), EPOLLIN, [this](std::uint32_t) { hear(); });
-  watched_.on_came(loop_.now());
+  client_->messages = loop_.watch(client_->socket.get(), EPOLLIN, [this](std::uint32_t) { read_messages(); });
+  watched_.on_contact(loop_.now());
   show();
 }
 
-void Keeper::lose() {
+void Keeper::disconnect() {
   client_.reset();
   watched_.on_gone(loop_.now());
   tick_.call_at(loop_.now());
 }
 
-void Keeper::hear() {
+void Keeper::read_messages() {
   std::array<char, kLongestMessage> bytes{};
   for (int i = 0; client_ && i < kHeardAtOnce; ++i) {
     const ssize_t size = recv(client_->socket.get(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_TRUNC);
@@ -122,7 +122,7 @@ void Keeper::hear() {
     if (size < 0 && (errno == ECONNRESET || errno == EINTR)) continue;
     if (size < 0 && errno == EAGAIN) break;
     if (size <= 0) {
-      lose();
+      disconnect();
     } else {
       const auto length = static_cast<std::size_t>(size);
       handle(length > bytes.size() ? std::string_view() : std::string_view(bytes.data(), length));
@@ -137,7 +137,7 @@ void Keeper::handle(std::string_view message) {
   if (!std::exchange(complained_, true)) {
     world_.complain("unknown message from aditd, connection closed: " + told.error());
   }
-  lose();
+  disconnect();
 }
 
 void Keeper::handle(const LightRequest& message) {
@@ -150,7 +150,7 @@ void Keeper::configure(const settings::Panel& panel) {
   edges_ = {};
   button_.reset();
   painter_.set_lines(nullptr);
-  Held held = world_.open(panel);
+  PanelDevices held = world_.open(panel);
   painter_.set_lines(std::move(held.lines));
   button_ = std::move(held.button);
   used_ = panel;
@@ -161,15 +161,15 @@ void Keeper::watch_button() {
   pressed_ = button_ ? std::nullopt : std::optional(false);
   if (!button_) return;
   edges_ = loop_.watch(button_->descriptor(), EPOLLIN, [this](std::uint32_t) {
-    look_at_button();
-    tell_what_is_new();
+    check_button();
+    send_changes();
   });
-  look_at_button();
+  check_button();
 }
 
 /// Losing the button cancels a press. A button that is pressed when it is back, or at the start, counts as
 /// not pressed until it is released.
-void Keeper::look_at_button() {
+void Keeper::check_button() {
   const auto level = button_->is_pressed();
   log_button(level);
   const bool is_first = !pressed_;
@@ -187,9 +187,9 @@ void Keeper::log_button(const std::expected<bool, std::string>& level) {
 /// Also reads a held button, because a chip that has vanished reports no release and aditd counts the time
 /// until the factory reset. While aditd warns of the reset, it sends lights twenty times a second.
 void Keeper::show() {
-  if (pressed_.value_or(false)) look_at_button();
+  if (pressed_.value_or(false)) check_button();
   paint();
-  tell_what_is_new();
+  send_changes();
 }
 
 void Keeper::paint() {
@@ -210,18 +210,18 @@ void Keeper::paint() {
 }
 
 /// A press that began before aditd connected counts as not pressed until it is released.
-void Keeper::tell_what_is_new() {
+void Keeper::send_changes() {
   if (!client_) return;
   const ButtonState button = pressed_ ? ButtonState{*pressed_ && client_->owns_press} : ButtonState{};
-  if (std::exchange(client_->told_button, button) != button) tell(message_of(button));
+  if (std::exchange(client_->told_button, button) != button) send_message(message_of(button));
   const LightsState lights{painter_.trouble()};
-  if (client_ && std::exchange(client_->told_lights, lights) != lights) tell(message_of(lights));
+  if (client_ && std::exchange(client_->told_lights, lights) != lights) send_message(message_of(lights));
 }
 
 /// Closes the connection if the message cannot be sent, so that a release is never skipped.
-void Keeper::tell(const std::string& message) {
+void Keeper::send_message(const std::string& message) {
   const int flags = MSG_DONTWAIT | MSG_NOSIGNAL;
-  if (send(client_->socket.get(), message.data(), message.size(), flags) < 0) lose();
+  if (send(client_->socket.get(), message.data(), message.size(), flags) < 0) disconnect();
 }
 
 }  // namespace adit::panel

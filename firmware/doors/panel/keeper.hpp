@@ -20,17 +20,17 @@ namespace adit::panel {
 
 /// Decides the lights from the messages of an aditd: its own lights while it is well, the fault if it is not,
 /// and dark after it ended by itself. It reads no clock: each call gets the time, which never runs backward.
-class Watched {
+class HeartbeatMonitor {
  public:
   /// aditd sends its lights at least once a second. After kSilence without them it hangs.
   static constexpr Milliseconds kSilence{1800};
   /// A start may take this long, from the constructor or from the connection. It is systemd's limit.
   static constexpr std::chrono::minutes kStart{1};
 
-  explicit Watched(Instant now) : since_(now) {}
+  explicit HeartbeatMonitor(Instant now) : since_(now) {}
 
   /// It connected, sent its lights, announced its end, or lost its connection.
-  void on_came(Instant now);
+  void on_contact(Instant now);
   void on_lights(const Lit& lit, Instant now);
   void on_ended(Instant now) { enter(Phase::Ended, now); }
   void on_gone(Instant now);
@@ -53,14 +53,14 @@ class Watched {
 /// time, the one that connected last. It reports the button's level and lights that cannot be set.
 class Keeper {
  public:
-  struct World {
-    std::function<Held(const settings::Panel&)> open;
+  struct Callbacks {
+    std::function<PanelDevices(const settings::Panel&)> open;
     std::function<void(const std::string&)> complain;  // gets a sentence for the log
   };
 
   /// `boards` has priority over the panel that aditd names. nullopt: no panel until aditd names one.
   Keeper(loop::Loop& loop, loop::FileDescriptor listening, std::optional<settings::Panel> boards,
-         World world);
+         Callbacks world);
   Keeper(const Keeper&) = delete;
   Keeper& operator=(const Keeper&) = delete;
 
@@ -75,26 +75,26 @@ class Keeper {
   };
 
   void accept();
-  void hear();
+  void read_messages();
   void handle(std::string_view message);
   void handle(const LightRequest& message);
   void handle(const EndRequest& /*message*/) { watched_.on_ended(loop_.now()); }
   void handle(const LinesRequest& message) {
     if (!knows_board_ && used_ != message.panel) configure(message.panel);
   }
-  void lose();
+  void disconnect();
   void configure(const settings::Panel& panel);
   void watch_button();
-  void look_at_button();
+  void check_button();
   void log_button(const std::expected<bool, std::string>& level);
   void show();
   void paint();
-  void tell_what_is_new();
-  void tell(const std::string& message);
+  void send_changes();
+  void send_message(const std::string& message);
 
   loop::Loop& loop_;
-  World world_;
-  Watched watched_;
+  Callbacks world_;
+  HeartbeatMonitor watched_;
   const bool knows_board_;
   std::optional<settings::Panel> used_;
   Painter painter_;

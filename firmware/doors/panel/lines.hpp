@@ -10,7 +10,7 @@
 namespace adit::panel {
 
 /// "panel: ABOUT: REASON". `error` is an errno.
-std::unexpected<std::string> trouble(const std::string& about, int error);
+std::unexpected<std::string> panel_error(const std::string& about, int error);
 
 /// The lines of the lights. Tests and the simulated panel replace GPIO here.
 class Lines {

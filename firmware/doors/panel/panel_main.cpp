@@ -40,7 +40,7 @@ command_line::Program panel_command_line_of(PanelOptions& options) {
       .ending =
           "Exit code: 0 after SIGTERM or SIGINT, with all lights dark; 1 if it cannot start; 2 for a wrong "
           "command line.",
-      .empty = command_line::Empty::Taken,
+      .empty = command_line::EmptyValue::Accepted,
   };
 }
 

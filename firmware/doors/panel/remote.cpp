@@ -30,16 +30,16 @@ class Connection {
   Connection(std::string socket, std::string greeting, loop::FileDescriptor epoll,
              loop::FileDescriptor announced)
       : socket_(std::move(socket)), greeting_(std::move(greeting)), epoll_(std::move(epoll)) {
-    if (announced) greet(std::move(announced));
+    if (announced) attach(std::move(announced));
   }
 
-  std::expected<void, std::string> tell(const std::string& message) {
-    if ((fd_ || greet(connected_to(socket_))) && put(message)) {
+  std::expected<void, std::string> send_message(const std::string& message) {
+    if ((fd_ || attach(connected_to(socket_))) && put(message)) {
       unheard_since_.reset();
       return {};
     }
     const int error = errno;
-    if (error != EAGAIN) lose();
+    if (error != EAGAIN) disconnect();
     const auto now = Clock::now();
     if (now - unheard_since_.value_or(now) < kPatience) {
       unheard_since_ = unheard_since_.value_or(now);
@@ -60,7 +60,7 @@ class Connection {
       const ssize_t size = recv(fd_.get(), bytes.data(), bytes.size(), MSG_DONTWAIT);
       if (size < 0 && (errno == EAGAIN || errno == EINTR)) break;
       if (size <= 0) {
-        lose();
+        disconnect();
         break;
       }
       if (const auto said = parse_report({bytes.data(), static_cast<std::size_t>(size)}))
@@ -82,7 +82,7 @@ class Connection {
   void handle(const LightsState& said) { trouble_ = said.trouble; }
 
   /// False with errno, also if `fd` is empty.
-  bool greet(loop::FileDescriptor fd) {
+  bool attach(loop::FileDescriptor fd) {
     epoll_event wanted{.events = EPOLLIN, .data = {}};
     if (!fd || epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, fd.get(), &wanted) != 0) return false;
     fd_ = std::move(fd);
@@ -93,7 +93,7 @@ class Connection {
     return send(fd_.get(), message.data(), message.size(), MSG_DONTWAIT | MSG_NOSIGNAL) >= 0;
   }
 
-  void lose() {
+  void disconnect() {
     fd_ = loop::FileDescriptor();  // also removes it from the epoll
     if (pressed_.value_or(false)) was_lost_ = true;
     pressed_ = false;
@@ -116,12 +116,12 @@ class RemoteLines final : public Lines {
   /// Sends the end only after a first set(): a program that ends before has failed to start.
   ~RemoteLines() override {
     if (is_started_) [[maybe_unused]]
-      const auto told = connection_->tell(message_of(EndRequest{}));
+      const auto told = connection_->send_message(message_of(EndRequest{}));
   }
 
   std::expected<void, std::string> set(const Lit& lit) override {
     is_started_ = true;
-    if (auto told = connection_->tell(message_of(LightRequest{lit})); !told) return told;
+    if (auto told = connection_->send_message(message_of(LightRequest{lit})); !told) return told;
     return connection_->lights();
   }
   bool is_watched() const override { return true; }
@@ -147,13 +147,13 @@ loop::FileDescriptor announce(const std::string& socket) {
   return connected_to(socket);
 }
 
-std::expected<Held, std::string> remote(const std::string& socket, const settings::Panel& settings,
-                                        loop::FileDescriptor announced) {
+std::expected<PanelDevices, std::string> remote(const std::string& socket, const settings::Panel& settings,
+                                                loop::FileDescriptor announced) {
   loop::FileDescriptor epoll(epoll_create1(EPOLL_CLOEXEC));
   if (!epoll) return std::unexpected(unreachable(socket, errno));
   auto connection = std::make_shared<Connection>(socket, message_of(LinesRequest{settings}), std::move(epoll),
                                                  std::move(announced));
-  return Held{std::make_unique<RemoteLines>(connection), std::make_unique<RemoteButton>(connection)};
+  return PanelDevices{std::make_unique<RemoteLines>(connection), std::make_unique<RemoteButton>(connection)};
 }
 
 }  // namespace adit::panel

@@ -25,7 +25,7 @@ class SimulatedLines final : public Lines {
 
   std::expected<void, std::string> set(const Lit& lit) override {
     if (shown_ == lit) return {};
-    if (!write(lit)) return trouble(file_, errno);
+    if (!write(lit)) return panel_error(file_, errno);
     shown_ = lit;
     return {};
   }

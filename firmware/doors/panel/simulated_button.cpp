@@ -56,10 +56,10 @@ class SimulatedButton final : public ButtonLine {
 
 /// Opened for writing too, because without a writer the FIFO would always be readable.
 std::expected<std::unique_ptr<ButtonLine>, std::string> simulated_button(const std::string& fifo) {
-  if (unlink(fifo.c_str()) != 0 && errno != ENOENT) return trouble(fifo, errno);
-  if (mkfifo(fifo.c_str(), kOursAlone) != 0) return trouble(fifo, errno);
+  if (unlink(fifo.c_str()) != 0 && errno != ENOENT) return panel_error(fifo, errno);
+  if (mkfifo(fifo.c_str(), kOursAlone) != 0) return panel_error(fifo, errno);
   loop::FileDescriptor opened(open(fifo.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC | O_NOFOLLOW));
-  if (opened.get() < 0) return trouble(fifo, errno);
+  if (opened.get() < 0) return panel_error(fifo, errno);
   return std::make_unique<SimulatedButton>(std::move(opened), fifo);
 }
 

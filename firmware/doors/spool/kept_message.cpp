@@ -128,7 +128,7 @@ icd::ChunkedBytes MapFile::mapped_bytes() {
   return data_in(shown_, stored_bytes());
 }
 
-bool MapFile::begins(const icd::ChunkedBytes& data) const {
+bool MapFile::is_prefix_of(const icd::ChunkedBytes& data) const {
   std::size_t ours = 0;
   for (const auto& chunk : data.chunks()) {
     if (chunk.owner() != shown_.owner) break;
@@ -204,7 +204,7 @@ void remove_parts(const std::string& folder) {
   });
   if (!read && read.error() != ENOENT)
     host::log(host::Level::Warning, "unfinished files may remain",
-              {{"why", host::trouble(folder, read.error())}});
+              {{"why", host::path_error(folder, read.error())}});
   for (const std::string& part : parts) ::unlink(part.c_str());
 }
 

@@ -78,7 +78,7 @@ class MapFile {
   icd::ChunkedBytes mapped_bytes();
   std::size_t stored_bytes() const;
   /// Whether `data` begins with all chunks that mapped_bytes() gave.
-  bool begins(const icd::ChunkedBytes& data) const;
+  bool is_prefix_of(const icd::ChunkedBytes& data) const;
 
   /// Writes the rest of `map`, renames the file to `path`, and replaces the map's data by the mapped file.
   /// Call only if begins(map.data.bytes), or if no data has been appended.

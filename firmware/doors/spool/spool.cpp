@@ -32,14 +32,14 @@ constexpr std::size_t kMostTold = 300;
 constexpr std::string_view kMap = "map-", kEnding = ".cbor", kBounds = ".bounds";
 constexpr char kFault = 'x';  // of loop::FaultCounter
 
-std::unexpected<icd::Refusal> not_kept(const std::string& why) {
+std::unexpected<icd::Refusal> storage_refusal(const std::string& why) {
   return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable,
                                       "Adit cannot store this map: " + why + "; send it again later"});
 }
 
 /// True if each try to read the file fails with an error that does not pass. Lack of descriptors or memory
 /// and errors of the disk may pass.
-bool can_never_be_read(const std::string& path) {
+bool is_unreadable(const std::string& path) {
   constexpr int kTries = 3;
   constexpr int kPassing[] = {EMFILE, ENFILE, ENOMEM, EIO, EAGAIN, EINTR};
   for (int i = 0; i < kTries; ++i) {
@@ -89,17 +89,17 @@ bool Spool::has_room(std::uint64_t bytes) const {
 
 icd::Checked<icd::MapUpdate> Spool::keep(std::uint64_t number, icd::MapUpdate map, std::uint64_t spare,
                                          std::shared_ptr<MapFile> begun) {
-  if (!unread_.empty()) return not_kept(unread_);
+  if (!unread_.empty()) return storage_refusal(unread_);
   if (::access(folder_.c_str(), F_OK) != 0) make_folder_of_ours(folder_);
   const std::string path = file_of(number);
-  if (!begun || !begun->begins(map.data.bytes)) begun = std::make_shared<MapFile>(path);
+  if (!begun || !begun->is_prefix_of(map.data.bytes)) begun = std::make_shared<MapFile>(path);
   const auto room = room_in(folder_, left_to_others_);
-  if (!room) return not_kept(folder_ + ": " + std::strerror(room.error()));
+  if (!room) return storage_refusal(folder_ + ": " + std::strerror(room.error()));
   if (*room < map.data.bytes.size() - begun->stored_bytes() + kBeside + spare) {
-    return not_kept(icd::sentence("the room for queued maps is full (", *room / 1000000, " MB left)"));
+    return storage_refusal(icd::sentence("the room for queued maps is full (", *room / 1000000, " MB left)"));
   }
   if (const int error = begun->finish(map, path); error != 0)
-    return not_kept(path + ": " + std::strerror(error));
+    return storage_refusal(path + ": " + std::strerror(error));
   return map;
 }
 
@@ -135,12 +135,12 @@ void Spool::put_aside(std::uint64_t number, const std::string& why) {
     put_aside_ += icd::sentence(put_aside_.empty() ? "" : "; ", file_of(number), ": ", why);
 }
 
-void Spool::work_begins(std::vector<std::uint64_t> numbers) {
+void Spool::begin_work(std::vector<std::uint64_t> numbers) {
   at_work_ = std::move(numbers);
   write_work();
 }
 
-void Spool::work_ends(bool are_packed) {
+void Spool::end_work(bool are_packed) {
   if (are_packed) {
     for (const std::uint64_t number : at_work_) ends_.erase(number);
   }
@@ -148,11 +148,11 @@ void Spool::work_ends(bool are_packed) {
   write_work();
 }
 
-void Spool::work_overruns() const {
+void Spool::record_overrun() const {
   std::ofstream(work_file(), std::ios::app) << kFault;
 }
 
-void Spool::remember(std::uint64_t number, const Ends& ends) {
+void Spool::remember(std::uint64_t number, const EndCounts& ends) {
   ends_[number] = ends;
   if (at_work_.empty()) write_work();  // else its fault counter has the file open
 }
@@ -167,12 +167,12 @@ void Spool::forget_ends(std::span<const std::uint64_t> numbers) {
 /// Without the file, the end of this process is not counted.
 void Spool::write_work() {
   std::string text;
-  const auto add = [&](std::uint64_t number, const Ends& ends, bool is_at_work) {
+  const auto add = [&](std::uint64_t number, const EndCounts& ends, bool is_at_work) {
     text += icd::sentence(number, " ", ends.faults, " ", ends.others, " ", is_at_work ? 1 : 0, "\n");
   };
   for (const std::uint64_t number : at_work_) {
     const auto found = ends_.find(number);
-    add(number, found == ends_.end() ? Ends() : found->second, true);
+    add(number, found == ends_.end() ? EndCounts() : found->second, true);
   }
   for (const auto& [number, ends] : ends_) {
     if (std::ranges::find(at_work_, number) == at_work_.end()) add(number, ends, false);
@@ -182,17 +182,17 @@ void Spool::write_work() {
 
 /// Reads how often processes ended while they packed each map, and counts the end of the last one.
 void Spool::count_ends() {
-  if (!host::may_exist(work_file())) return;
+  if (!host::can_exist(work_file())) return;
   const auto text = host::read_file(work_file());
   if (!text)
     return host::log(host::Level::Warning, "cannot read which map was packed", {{"why", text.error()}});
   const bool was_fault = text->ends_with(kFault);
   std::istringstream lines(*text);
   std::uint64_t number = 0;
-  Ends ends;
+  EndCounts ends;
   for (int was_at_work = 0; lines >> number >> ends.faults >> ends.others >> was_at_work;) {
     if (was_at_work != 0) ++(was_fault ? ends.faults : ends.others);
-    if (host::may_exist(file_of(number))) ends_[number] = ends;
+    if (host::can_exist(file_of(number))) ends_[number] = ends;
   }
   write_work();
 }
@@ -203,7 +203,7 @@ icd::Checked<Spool::KeptMap> Spool::read(std::uint64_t number) const {
   if (const auto ends = ends_.find(number); ends != ends_.end()) kept.ends = ends->second;
   const std::string path = bounds_file_of(number);
   const auto* const grid = std::get_if<icd::OccupancyGrid>(&kept.map.msg);
-  if (grid == nullptr || !host::may_exist(path)) return kept;
+  if (grid == nullptr || !host::can_exist(path)) return kept;
   const auto file = map_file(path);
   if (!file)
     return std::unexpected(
@@ -219,10 +219,10 @@ icd::Checked<Spool::KeptMap> Spool::read(std::uint64_t number) const {
   return kept;
 }
 
-Spool::Kept Spool::read() {
+Spool::KeptMaps Spool::read() {
   remove_parts(folder_);
   count_ends();
-  Kept kept;
+  KeptMaps kept;
   std::map<std::uint64_t, std::string> unreadable;  // why
   const auto numbers = host::numbers_in(folder_, kMap, kEnding);
   unread_ = numbers ? "" : numbers.error();
@@ -232,7 +232,7 @@ Spool::Kept Spool::read() {
       kept.push_back(std::move(*map));
     } else if (map.error().status != icd::Status::ServiceUnavailable) {
       put_aside(number, map.error().sentence);
-    } else if (can_never_be_read(file_of(number))) {
+    } else if (is_unreadable(file_of(number))) {
       unreadable.emplace(number, map.error().sentence);
     } else {
       unread_ = map.error().sentence;

@@ -20,20 +20,20 @@ namespace adit::spool {
 class Spool {
  public:
   /// How processes ended while they packed a map, since it was last packed.
-  struct Ends {
+  struct EndCounts {
     /// So many faults are the map's own, and so many other ends may be.
     static constexpr int kMost = 3;
     int faults = 0;  // in the thread that packed it, or that took longer than the watchdog allows
     int others = 0;  // SIGKILL, for example
-    friend bool operator==(const Ends&, const Ends&) = default;
+    friend bool operator==(const EndCounts&, const EndCounts&) = default;
   };
   struct KeptMap {
     std::uint64_t number = 0;
     icd::MapUpdate map;
     std::optional<icd::GridBounds> bounds{};  // keep_bounds()
-    Ends ends{};
+    EndCounts ends{};
   };
-  using Kept = std::vector<KeptMap>;  // by number
+  using KeptMaps = std::vector<KeptMap>;  // by number
 
   /// Creates the directory for this user alone. `left_to_others`: bytes of its file system that maps must
   /// leave free, at most a quarter of it, because other files there must not fail for want of room.
@@ -43,7 +43,7 @@ class Spool {
   Spool& operator=(const Spool&) = delete;
 
   /// Changes `left_to_others`. Any thread.
-  void leave_to_others(std::uint64_t bytes) { left_to_others_ = bytes; }
+  void set_reserved(std::uint64_t bytes) { left_to_others_ = bytes; }
 
   /// A file for a map's data as it arrives. Release the last reference in the writer thread.
   std::shared_ptr<MapFile> begin() { return std::make_shared<MapFile>(folder_ + "/arriving"); }
@@ -65,14 +65,14 @@ class Spool {
 
   /// Record which maps are being packed, so that the next read() counts it if the process ends meanwhile.
   /// `are_packed`: forgets their earlier ends. On the loop, as read().
-  void work_begins(std::vector<std::uint64_t> numbers);
-  void work_ends(bool are_packed);
+  void begin_work(std::vector<std::uint64_t> numbers);
+  void end_work(bool are_packed);
   /// The work takes longer than the watchdog allows: if the process ends now, it is a fault.
-  void work_overruns() const;
+  void record_overrun() const;
   /// A file for loop::FaultCounter, during the work.
   std::string work_file() const { return folder_ + "/at-work"; }
   /// Begins with earlier ends of a map that keep() has stored under another number.
-  void remember(std::uint64_t number, const Ends& ends);
+  void remember(std::uint64_t number, const EndCounts& ends);
   /// The maps are not queued any more.
   void forget_ends(std::span<const std::uint64_t> numbers);
   /// A sentence that names maps that read() set aside, and why; or "".
@@ -82,7 +82,7 @@ class Spool {
   /// (wrong owner, no regular file) if others can. If a file cannot be read now, all files stay, the result
   /// is empty, and keep() rejects every map until the next start, because a newer map must not precede an
   /// older one.
-  Kept read();
+  KeptMaps read();
   /// Why read() could not read a file, or "".
   const std::string& unread() const { return unread_; }
   /// Renames a damaged file so that the spool ignores it and a person can examine it. Writer thread.
@@ -97,7 +97,7 @@ class Spool {
   void put_aside(std::uint64_t number, const std::string& why);
 
   std::string folder_, unread_;  // unread_: why read() failed
-  std::map<std::uint64_t, Ends> ends_;
+  std::map<std::uint64_t, EndCounts> ends_;
   std::vector<std::uint64_t> at_work_;
   std::string put_aside_;
   std::atomic<std::uint64_t> left_to_others_;  // also read by the writer thread

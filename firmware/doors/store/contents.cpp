@@ -10,7 +10,7 @@ namespace adit::store {
 /// Assembles the contents from the files.
 class Assembly {
  public:
-  Assembly(const Directory& directory, const Keeping& keeping, std::uint64_t before)
+  Assembly(const Directory& directory, const LogOptions& keeping, std::uint64_t before)
       : directory_(directory), keeping_(keeping), before_(before) {}
 
   Result<Contents> run() {
@@ -81,7 +81,7 @@ class Assembly {
     std::erase_if(logs_, [&](const Scan& log) { return log.name.number < snapshot.name.number; });
     contents_.snapshot = snapshot.name.number;
     std::uint64_t next = 1;
-    for (const Scan::Found& found : snapshot.frames) {
+    for (const Scan::FoundFrame& found : snapshot.frames) {
       if (found.frame.sequence != next) contents_.items.push_back(Gap{.file = snapshot.name.text()});
       next = found.frame.sequence + 1;
       if (found.frame.kind != kSnapshotEnds)
@@ -103,14 +103,15 @@ class Assembly {
   void drop_void() {
     std::uint64_t base = std::numeric_limits<std::uint64_t>::max();
     for (auto log = logs_.rbegin(); log != logs_.rend(); ++log) {
-      std::erase_if(log->frames, [base](const Scan::Found& found) { return found.frame.sequence > base; });
+      std::erase_if(log->frames,
+                    [base](const Scan::FoundFrame& found) { return found.frame.sequence > base; });
       if (log->header) base = std::min(base, log->header->base);
     }
   }
 
   void find_durable(const Scan& log) {
     if (log.header) contents_.durable = std::max(contents_.durable, log.header->base);
-    for (const Scan::Found& found : log.frames)
+    for (const Scan::FoundFrame& found : log.frames)
       contents_.durable = std::max(contents_.durable, found.frame.durable);
   }
 
@@ -123,7 +124,7 @@ class Assembly {
   /// False: a frame is missing, and the rest was never synced.
   bool add_frames(const Scan& log) {
     if (log.size < least_size(log)) gap(next_, std::nullopt, log.name);
-    for (const Scan::Found& found : log.frames) {
+    for (const Scan::FoundFrame& found : log.frames) {
       const Frame& frame = found.frame;
       if (frame.sequence < next_) continue;
       if (frame.sequence > next_) {
@@ -172,7 +173,7 @@ class Assembly {
   }
 
   const Directory& directory_;
-  const Keeping keeping_;
+  const LogOptions keeping_;
   const Layout layout_ = keeping_.layout;
   const std::uint64_t before_;
   std::vector<FileName> names_;
@@ -182,7 +183,7 @@ class Assembly {
   std::uint64_t first_here_ = 0;  // of the last log
 };
 
-Result<Contents> Contents::read(const Directory& directory, const Keeping& keeping, std::uint64_t before) {
+Result<Contents> Contents::read(const Directory& directory, const LogOptions& keeping, std::uint64_t before) {
   return Assembly(directory, keeping, before).run();
 }
 
@@ -217,7 +218,7 @@ Scan scan(const FileName& name, std::string_view bytes, const Layout& layout) {
     newest = parsed->frame.process;
     if (first == 0 && parsed->frame.kind == kFileBegins) {
       scan.header = FileHeader::parse(parsed->frame.body);
-      scan.begin = Scan::Found{parsed->frame, first, parsed->copy + (scan.begin ? 1u : 0u)};
+      scan.begin = Scan::FoundFrame{parsed->frame, first, parsed->copy + (scan.begin ? 1u : 0u)};
     } else if (!scan.frames.empty() && scan.frames.back().offset == first) {
       ++scan.frames.back().good;
     } else {
@@ -230,8 +231,8 @@ Scan scan(const FileName& name, std::string_view bytes, const Layout& layout) {
 bool is_whole_snapshot(const Scan& scan) {
   if (!scan.header || scan.frames.empty() || scan.frames.back().frame.kind != kSnapshotEnds) return false;
   std::uint64_t next = 1;
-  return std::ranges::all_of(scan.frames,
-                             [&next](const Scan::Found& found) { return found.frame.sequence == next++; });
+  return std::ranges::all_of(
+      scan.frames, [&next](const Scan::FoundFrame& found) { return found.frame.sequence == next++; });
 }
 
 }  // namespace adit::store

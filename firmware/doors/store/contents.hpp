@@ -16,7 +16,7 @@
 namespace adit::store {
 
 /// Storage of a log.
-struct Keeping {
+struct LogOptions {
   Layout layout = kOnDisk;
   std::size_t file_bytes = 8u << 20;  // of one file; a longer record gets a longer file
   bool syncs = true;  // false: the log is in memory, its files grow, and every append is durable
@@ -59,7 +59,7 @@ class Contents {
   static constexpr std::uint64_t kAll = std::numeric_limits<std::uint64_t>::max();
   /// Reads without changes. Error: a file cannot be read, or a later version wrote it. `before`: skips logs
   /// with this number and above.
-  static Result<Contents> read(const Directory& directory, const Keeping& keeping,
+  static Result<Contents> read(const Directory& directory, const LogOptions& keeping,
                                std::uint64_t before = kAll);
 
   /// Whether that log was read, or is contained in the snapshot.
@@ -103,17 +103,17 @@ inline Layout snapshot_layout(const Layout& layout) {
 
 /// A log file as found.
 struct Scan {
-  struct Found {
+  struct FoundFrame {
     Frame frame;
     std::size_t offset;  // of its first copy
     std::size_t good;    // good copies
   };
   FileName name;
   std::size_t size = 0;
-  std::optional<Found> begin = std::nullopt;  // the file's header
+  std::optional<FoundFrame> begin = std::nullopt;  // the file's header
   std::optional<FileHeader> header = std::nullopt;
-  std::vector<Found> frames = {};  // all other frames, in order
-  std::uint64_t process = 0;       // highest process number in a frame
+  std::vector<FoundFrame> frames = {};  // all other frames, in order
+  std::uint64_t process = 0;            // highest process number in a frame
 };
 
 /// Finds all frames with a good copy. Skips frames of an older process after those of a newer one, because

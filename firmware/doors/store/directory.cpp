@@ -105,21 +105,21 @@ Result<std::vector<FileName>> Directory::files() const {
 
 Result<std::string> Directory::read(const std::string& name, std::size_t most) const {
   const auto file = loop::open_regular(name, O_RDONLY | O_NOFOLLOW, fd_.get());
-  if (!file) return trouble(name, errno);
+  if (!file) return file_error(name, errno);
   auto bytes = loop::read_first(file, most);
-  if (!bytes) return trouble(name, bytes.error());
+  if (!bytes) return file_error(name, bytes.error());
   return std::move(*bytes);
 }
 
 Result<loop::FileDescriptor> Directory::make(const std::string& name) const {
   loop::FileDescriptor file(::openat(fd_.get(), name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
-  if (!file) return trouble(errno);
+  if (!file) return file_error(errno);
   return file;
 }
 
 Result<loop::FileDescriptor> Directory::open_to_write(const std::string& name) const {
   auto file = loop::open_regular(name, O_WRONLY | O_NOFOLLOW, fd_.get());
-  if (!file) return trouble(name, errno);
+  if (!file) return file_error(name, errno);
   return file;
 }
 
@@ -131,12 +131,12 @@ std::optional<std::uint64_t> Directory::size(const std::string& name) const {
 }
 
 Result<void> Directory::rename(const std::string& from, const std::string& to) const {
-  if (::renameat(fd_.get(), from.c_str(), fd_.get(), to.c_str()) != 0) return trouble(from, errno);
+  if (::renameat(fd_.get(), from.c_str(), fd_.get(), to.c_str()) != 0) return file_error(from, errno);
   return {};
 }
 
 Result<void> Directory::remove(const std::string& name) const {
-  if (::unlinkat(fd_.get(), name.c_str(), 0) != 0 && errno != ENOENT) return trouble(name, errno);
+  if (::unlinkat(fd_.get(), name.c_str(), 0) != 0 && errno != ENOENT) return file_error(name, errno);
   return {};
 }
 
@@ -161,11 +161,11 @@ Result<void> Directory::put_aside() const {
   const auto all = ADIT_TRY(files());
   if (all.empty()) return {};
   const auto aside = ADIT_TRY(first_free("damaged-"));
-  if (::mkdirat(fd_.get(), aside.c_str(), 0700) != 0) return trouble(aside, errno);
+  if (::mkdirat(fd_.get(), aside.c_str(), 0700) != 0) return file_error(aside, errno);
   for (const FileName& file : all) {
     const std::string name = file.text(), link = aside + '/' + name;
     if (file.kind == FileName::Kind::Spare) continue;
-    if (::linkat(fd_.get(), name.c_str(), fd_.get(), link.c_str(), 0) != 0) return trouble(link, errno);
+    if (::linkat(fd_.get(), name.c_str(), fd_.get(), link.c_str(), 0) != 0) return file_error(link, errno);
   }
   return sync();
 }

@@ -76,11 +76,11 @@ class Directory {
   Result<void> sync() const;
   /// Syncs the directory's own name.
   Result<void> sync_name() const;
-  std::unexpected<Error> trouble(const std::string& name, int number) const {
+  std::unexpected<Error> file_error(const std::string& name, int number) const {
     return path_error(path_ + '/' + name, number);
   }
   /// For write errors: names the directory, because the file's name differs at each try.
-  std::unexpected<Error> trouble(int number) const { return path_error(path_, number); }
+  std::unexpected<Error> file_error(int number) const { return path_error(path_, number); }
 
  private:
   Result<std::vector<std::string>> names() const;

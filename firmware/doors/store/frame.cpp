@@ -94,7 +94,7 @@ std::string to_bytes(const Frame& frame, const Layout& layout, std::uint64_t sal
   return all;
 }
 
-std::optional<Parsed> parse(std::string_view file, std::size_t offset, std::uint64_t salt) {
+std::optional<ParsedFrame> parse(std::string_view file, std::size_t offset, std::uint64_t salt) {
   if (offset > file.size() || file.size() - offset < kHeader) return std::nullopt;
   const std::string_view here = file.substr(offset);
   const std::uint64_t length = number_at(here, 8, 4);
@@ -102,12 +102,12 @@ std::optional<Parsed> parse(std::string_view file, std::size_t offset, std::uint
     return std::nullopt;
   if (number_at(here, 4, 4) != checksum(here.substr(kChecked, kHeader - kChecked + length), salt, offset))
     return std::nullopt;
-  return Parsed{{.kind = static_cast<std::uint8_t>(here[12]),
-                 .sequence = number_at(here, 16, 8),
-                 .process = number_at(here, 24, 8),
-                 .durable = number_at(here, 32, 8),
-                 .body = here.substr(kHeader, length)},
-                static_cast<std::uint8_t>(here[13])};
+  return ParsedFrame{{.kind = static_cast<std::uint8_t>(here[12]),
+                      .sequence = number_at(here, 16, 8),
+                      .process = number_at(here, 24, 8),
+                      .durable = number_at(here, 32, 8),
+                      .body = here.substr(kHeader, length)},
+                     static_cast<std::uint8_t>(here[13])};
 }
 
 std::size_t next_candidate(std::string_view file, std::size_t offset, const Layout& layout) {

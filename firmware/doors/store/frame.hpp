@@ -190,12 +190,12 @@ std::size_t room_of(std::size_t body, const Layout& layout);
 /// All copies of a frame at `offset` of the file with this salt.
 std::string to_bytes(const Frame& frame, const Layout& layout, std::uint64_t salt, std::size_t offset);
 
-struct Parsed {
+struct ParsedFrame {
   Frame frame;       // its body refers to the file's bytes
   std::size_t copy;  // 0 or 1
 };
 /// The frame at `offset`, or std::nullopt if it is absent or damaged.
-std::optional<Parsed> parse(std::string_view file, std::size_t offset, std::uint64_t salt);
+std::optional<ParsedFrame> parse(std::string_view file, std::size_t offset, std::uint64_t salt);
 
 /// The first place for a frame from `offset` on, a multiple of layout.align; the file's size if there is
 /// none.

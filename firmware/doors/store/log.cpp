@@ -41,7 +41,7 @@ Result<void> make_zeros(const Directory& directory, const FileName& name, std::s
   const std::string part = name.text() + std::string(Directory::kPart);
   const auto file = ADIT_TRY(directory.make(part));
   const int error = write_zeros(file.get(), size, enough);
-  Result<void> made = error == 0 ? directory.rename(part, name.text()) : directory.trouble(error);
+  Result<void> made = error == 0 ? directory.rename(part, name.text()) : directory.file_error(error);
   if (!made) (void)directory.remove(part);
   return made;
 }
@@ -89,11 +89,11 @@ Result<void> Log::rewrite(const Contents& contents) {
     }
     const std::string frame = to_bytes(each.frame, keeping_.layout, each.file.salt, each.offset);
     if (const int error = write_all(fd.get(), frame, each.offset); error != 0)
-      return directory_.trouble(name, error);
+      return directory_.file_error(name, error);
   }
   if (!keeping_.syncs) return {};
   for (const auto& [name, fd] : files) {
-    if (::fdatasync(fd.get()) != 0) return directory_.trouble(name, errno);
+    if (::fdatasync(fd.get()) != 0) return directory_.file_error(name, errno);
   }
   return directory_.sync();
 }
@@ -135,7 +135,7 @@ Result<void> Log::flush() {
 Result<void> Log::turn_for(std::size_t body) {
   if (!is_dead_) (void)flush();  // after an error is_dead_ is set
   std::size_t size = bytes_of(FileHeader().to_bytes().size()) + bytes_of(body);
-  for (const Unsynced& each : unsynced_) size += bytes_of(each.body.size());
+  for (const UnsyncedRecord& each : unsynced_) size += bytes_of(each.body.size());
   ++highest_;
   auto made = make_file(keeping_.syncs ? std::max(size, keeping_.file_bytes) : 0);
   const std::size_t small = size + keeping_.least_bytes;
@@ -190,17 +190,17 @@ Result<void> Log::fill(File& file) const {
                                  .to_bytes();
   std::uint64_t sequence = durable_;
   auto wrote = write(file, {kFileBegins, 0, process_, durable_, header});
-  for (const Unsynced& each : unsynced_) {
+  for (const UnsyncedRecord& each : unsynced_) {
     if (wrote) wrote = write(file, {each.kind, ++sequence, process_, durable_, each.body});
   }
-  if (wrote && keeping_.syncs && ::fdatasync(file.fd.get()) != 0) return directory_.trouble(errno);
+  if (wrote && keeping_.syncs && ::fdatasync(file.fd.get()) != 0) return directory_.file_error(errno);
   return wrote;
 }
 
 Result<void> Log::write(File& file, const Frame& frame) const {
   const std::string bytes = to_bytes(frame, keeping_.layout, file.name.salt, file.at);
   if (const int error = write_all(file.fd.get(), bytes, file.at); error != 0)
-    return directory_.trouble(error);
+    return directory_.file_error(error);
   file.at += bytes_of(frame.body.size());
   return {};
 }
@@ -208,17 +208,18 @@ Result<void> Log::write(File& file, const Frame& frame) const {
 Result<void> Log::sync() {
   if (!keeping_.syncs || ::fdatasync(file_.fd.get()) == 0) return {};
   is_dead_ = true;
-  return directory_.trouble(errno);
+  return directory_.file_error(errno);
 }
 
-Result<void> make_spare(const Directory& directory, const Keeping& keeping, const std::atomic<bool>& enough) {
+Result<void> make_spare(const Directory& directory, const LogOptions& keeping,
+                        const std::atomic<bool>& enough) {
   const auto files = ADIT_TRY(directory.files());
   const auto salt = ADIT_TRY(random_salt());
   if (std::ranges::find(files, FileName::Kind::Spare, &FileName::kind) != files.end()) return {};
   return make_zeros(directory, {FileName::Kind::Spare, 0, salt}, keeping.file_bytes, enough);
 }
 
-Result<Snapshot> Snapshot::begin(const Directory& directory, const Keeping& keeping, const Log& log) {
+Result<Snapshot> Snapshot::begin(const Directory& directory, const LogOptions& keeping, const Log& log) {
   const auto salt = ADIT_TRY(random_salt());
   Snapshot snapshot(directory, keeping);
   snapshot.name_ = {FileName::Kind::Snapshot, log.number(), salt};
@@ -249,17 +250,17 @@ Result<void> Snapshot::write(std::uint8_t kind, std::uint64_t sequence, std::str
     return std::unexpected(Error{
         Error::Cause::TooLong, "a snapshot of more than " + std::to_string(keeping_.most_bytes) + " bytes"});
   if (const int error = write_all(file_.get(), bytes, at_); error != 0)
-    return directory_->trouble(part_, error);
+    return directory_->file_error(part_, error);
   at_ += (bytes.size() + 7) / 8 * 8;
   return {};
 }
 
 Result<void> Snapshot::finish() {
   if (auto wrote = write(kSnapshotEnds, ++count_, {}); !wrote) return wrote;
-  if (keeping_.syncs && ::fsync(file_.get()) != 0) return directory_->trouble(part_, errno);
+  if (keeping_.syncs && ::fsync(file_.get()) != 0) return directory_->file_error(part_, errno);
   const auto bytes = ADIT_TRY(directory_->read(part_, keeping_.most_bytes));
   const Scan read = scan(name_, bytes, snapshot_layout(keeping_.layout));
-  if (!is_whole_snapshot(read) || read.frames.size() != count_) return directory_->trouble(part_, EIO);
+  if (!is_whole_snapshot(read) || read.frames.size() != count_) return directory_->file_error(part_, EIO);
   if (auto named = directory_->rename(part_, name_.text()); !named) return named;
   file_ = {};
   if (keeping_.syncs) {

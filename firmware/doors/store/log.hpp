@@ -24,7 +24,7 @@ enum class Durability : std::uint8_t {
 class Log {
  public:
   /// `directory` must outlive this object.
-  Log(const Directory& directory, const Keeping& keeping) : directory_(directory), keeping_(keeping) {}
+  Log(const Directory& directory, const LogOptions& keeping) : directory_(directory), keeping_(keeping) {}
 
   /// Call first. Continues after `contents`. Writes and syncs possibly unsynced data again. Error: data
   /// beyond contents.durable may not be on disk until an append succeeds.
@@ -55,7 +55,7 @@ class Log {
     loop::FileDescriptor fd = {};
     std::size_t at = 0, size = 0;  // offset of the next frame, and the end
   };
-  struct Unsynced {
+  struct UnsyncedRecord {
     std::uint8_t kind;
     std::string body;
   };
@@ -67,11 +67,11 @@ class Log {
   Result<void> fill(File& file) const;
 
   const Directory& directory_;
-  const Keeping keeping_;
+  const LogOptions keeping_;
   File file_;
   std::uint64_t last_ = 0, durable_ = 0, process_ = 0;
-  std::uint64_t highest_ = 0;       // highest tried file number
-  std::vector<Unsynced> unsynced_;  // records above durable_
+  std::uint64_t highest_ = 0;             // highest tried file number
+  std::vector<UnsyncedRecord> unsynced_;  // records above durable_
   /// There is no file, or a sync of it has failed, so the kernel may have dropped data. The next append
   /// starts a new file.
   bool is_dead_ = true;
@@ -79,14 +79,15 @@ class Log {
 
 /// Creates a file of zeros for the next turn(), which then needs no space and little time. Blocks on the
 /// disk; use another thread. No effect if there is one, or once `enough` is true.
-Result<void> make_spare(const Directory& directory, const Keeping& keeping, const std::atomic<bool>& enough);
+Result<void> make_spare(const Directory& directory, const LogOptions& keeping,
+                        const std::atomic<bool>& enough);
 
 /// Writes a snapshot, which replaces all records before a log's number. The file gets its name when it is
 /// complete; an unfinished one has no effect. Use from one thread at a time, which may run beside the Log's.
 class Snapshot {
  public:
   /// `log` must have just turned. `directory` must outlive this object.
-  static Result<Snapshot> begin(const Directory& directory, const Keeping& keeping, const Log& log);
+  static Result<Snapshot> begin(const Directory& directory, const LogOptions& keeping, const Log& log);
   Snapshot(Snapshot&&) = default;
   Snapshot& operator=(Snapshot&&) = delete;
   ~Snapshot();
@@ -98,12 +99,13 @@ class Snapshot {
   std::size_t bytes() const { return at_; }
 
  private:
-  Snapshot(const Directory& directory, const Keeping& keeping) : directory_(&directory), keeping_(keeping) {}
+  Snapshot(const Directory& directory, const LogOptions& keeping)
+      : directory_(&directory), keeping_(keeping) {}
   Result<void> write(std::uint8_t kind, std::uint64_t sequence, std::string_view body);
   Result<void> remove_old() const;
 
   const Directory* directory_;
-  Keeping keeping_;
+  LogOptions keeping_;
   FileName name_;
   std::string part_;
   loop::FileDescriptor file_;

@@ -33,16 +33,16 @@ void LinkPace::on_write_begun(int fd, loop::Instant now) {
   if (!delivery_) return;
   delivery_->on_write_begun(progress_of(fd, now));
   told_ = 0;
-  tell(fd);
+  apply_pace(fd);
 }
 
 void LinkPace::on_write(int fd, loop::Instant now) {
   if (!delivery_) return;
   delivery_->on_write(progress_of(fd, now));
-  tell(fd);
+  apply_pace(fd);
 }
 
-void LinkPace::tell(int fd) {
+void LinkPace::apply_pace(int fd) {
   const auto pace = static_cast<std::uint64_t>(delivery_->pace());
   if (pace != told_) set_pace(fd, pace);
   told_ = pace;
@@ -59,7 +59,7 @@ void Connection::keep_warm() {
 
 void Connection::retry_now() {
   attempts_.retry_now();
-  if (is_connected() || (!socket_ && !stays_warm())) return;
+  if (is_connected() || (!socket_ && !keeps_idle())) return;
   close_socket();
   connect();
 }
@@ -69,14 +69,14 @@ void Connection::close() {
   if (socket_) drop();
 }
 
-bool Connection::stays_warm() const {
-  return warm_ && server_->keeps_warm();
+bool Connection::keeps_idle() const {
+  return warm_ && server_->can_keep_idle();
 }
 
 void Connection::connect() {
   attempts_.on_begun(loop_.now());
   auto fd = begin_connect(endpoint_);
-  if (!fd) return connecting_failed(fd.error().why);
+  if (!fd) return on_connect_failed(fd.error().why);
   timer_.call_at(loop_.now() + endpoint_.connect_within);
   socket_.emplace(std::move(*fd));
   socket_->source = loop_.watch(socket_->fd.get(), EPOLLOUT, [this](std::uint32_t) { on_socket_ready(); });
@@ -84,13 +84,13 @@ void Connection::connect() {
 
 /// Connects an idle connection now, or when the pause since the last attempt is over.
 void Connection::return_warm() {
-  if (!stays_warm() || socket_ || exchange_) return;
+  if (!keeps_idle() || socket_ || exchange_) return;
   if (attempts_.next() <= loop_.now()) return connect();
   timer_.call_at(attempts_.next());
 }
 
-void Connection::connecting_ended(int error) {
-  if (error != 0) return connecting_failed(std::strerror(error));
+void Connection::on_connect_result(int error) {
+  if (error != 0) return on_connect_failed(std::strerror(error));
   socket_->is_open = true;
   socket_->idle_since = loop_.now();
   socket_->is_fresh = exchange_ != nullptr;
@@ -100,12 +100,12 @@ void Connection::connecting_ended(int error) {
   rest();
 }
 
-void Connection::connecting_failed(const std::string& why) {
+void Connection::on_connect_failed(const std::string& why) {
   const loop::Instant next =
       attempts_.on_failed("connecting to " + authority_of(endpoint_) +
                           (endpoint_.interface.empty() ? "" : " by " + endpoint_.interface) + ": " + why);
   close_socket();
-  if (stays_warm()) timer_.call_at(next);
+  if (keeps_idle()) timer_.call_at(next);
   if (exchange_) deliver(NeverSent{trouble()});
 }
 
@@ -124,7 +124,7 @@ void Connection::on_idle_ended() {
 
 void Connection::drop() {
   close_socket();
-  if (stays_warm()) timer_.call_at(std::max(loop_.now(), attempts_.next()));
+  if (keeps_idle()) timer_.call_at(std::max(loop_.now(), attempts_.next()));
 }
 
 void Connection::close_socket() {
@@ -142,9 +142,9 @@ Connection::Connection(loop::Loop& loop, Endpoint endpoint, icd::BearerToken tok
       pace_(std::move(pace)) {
   server_->add(*this);
   silence_ = loop_.timer([this] { check_silence(); });
-  timer_ = loop_.timer([this] { time_came(); });
-  tell_ = loop_.timer([this] { tell(); });
-  look_ = loop_.timer([this] { look(); });
+  timer_ = loop_.timer([this] { on_timer(); });
+  tell_ = loop_.timer([this] { report_outcome(); });
+  look_ = loop_.timer([this] { update_pace(); });
 }
 
 Connection::Connection(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token,
@@ -189,15 +189,15 @@ void Connection::begin_sending() {
 }
 
 void Connection::on_socket_ready() {
-  if (!is_connected()) return connecting_ended(connect_error(socket_->fd.get()));
+  if (!is_connected()) return on_connect_result(connect_error(socket_->fd.get()));
   if (!exchange_) return on_idle_ended();
   if (read_answer()) return;
   if (exchange_->wants_to_write()) write();
 }
 
-void Connection::time_came() {
+void Connection::on_timer() {
   if (!socket_) return return_warm();
-  if (!is_connected()) return connecting_failed("no answer in time");
+  if (!is_connected()) return on_connect_failed("no answer in time");
   if (!exchange_) return on_idle_ended();
   if (read_answer()) return;
   exchange_->listen(socket_->fd.get(), loop_.now());
@@ -223,7 +223,7 @@ void Connection::check_silence() {
 }
 
 /// Updates the pace while the kernel's buffer is full.
-void Connection::look() {
+void Connection::update_pace() {
   if (!exchange_ || !is_connected() || !exchange_->wants_to_write()) return;
   pace_->on_write(socket_->fd.get(), loop_.now());
   look_.call_at(loop_.now() + LinkPace::kLook);
@@ -234,7 +234,7 @@ void Connection::begin() {
   // NeverSent is true, and a retry on a new connection is safe.
   if (!is_quiet(socket_->fd.get()))
     return socket_->is_fresh
-               ? never_sent("the peer closed the new connection, or sent bytes before the request")
+               ? deliver_never_sent("the peer closed the new connection, or sent bytes before the request")
                : retry_request();
   give_up_after(socket_->fd.get(), exchange_->longest_silence());
   // A request that is given up must not arrive after the next request on another connection, and must not be
@@ -254,15 +254,15 @@ void Connection::write() {
   const bool begins = exchange_->sent_bytes() == 0;
   if (!begins) pace_->on_write(socket_->fd.get(), loop_.now());
   const int error = exchange_->write(socket_->fd.get());
-  if (begins) began_to_leave();
+  if (begins) on_first_write();
   if (error == 0) return socket_->source.wait_for(exchange_->wants_to_write() ? kComing | EPOLLOUT : kComing);
   if (exchange_->sent_bytes() == 0)
-    return socket_->is_fresh ? never_sent(std::strerror(error)) : retry_request();
+    return socket_->is_fresh ? deliver_never_sent(std::strerror(error)) : retry_request();
   if (!read_answer()) socket_->source.wait_for(kComing);
 }
 
-void Connection::began_to_leave() {
-  exchange_->began_to_leave(loop_.now());
+void Connection::on_first_write() {
+  exchange_->on_first_write(loop_.now());
   if (!exchange_->wants_to_write()) return;  // too short to measure the link
   pace_->on_write_begun(socket_->fd.get(), loop_.now());
   look_.call_at(loop_.now() + LinkPace::kLook);
@@ -290,7 +290,7 @@ void Connection::on_earlier_request_ended() {
   if (is_connected()) schedule_listening();
 }
 
-std::optional<Sent> Connection::has_arrived() const {
+std::optional<SendTimes> Connection::has_arrived() const {
   if (!exchange_ || !is_connected() || !exchange_->has_arrived(socket_->fd.get())) return {};
   return exchange_->sent_times(transmission(socket_->fd.get()), loop_.now());
 }
@@ -301,7 +301,7 @@ void Connection::on_answered() {
   answer.sent = exchange_->sent_times(seen, loop_.now());
   reset_on_close(socket_->fd.get(), exchange_->sent_bytes() < exchange_->total());
   // The measured mapping server promises keep-alive with a 4xx and still closes.
-  const bool keep = server_->on_answer(*this, exchange_->may_keep_alive() && answer.status < 400);
+  const bool keep = server_->on_answer(*this, exchange_->can_keep_alive() && answer.status < 400);
   if (keep) {
     socket_->is_fresh = false;
     socket_->sent_twice = seen.sent_twice;
@@ -318,7 +318,7 @@ void Connection::on_in_doubt(InDoubt doubt) {
   deliver(std::move(doubt));
 }
 
-void Connection::never_sent(const std::string& reason) {
+void Connection::deliver_never_sent(const std::string& reason) {
   std::string why = exchange_->sentence(reason);
   drop();
   deliver(NeverSent{std::move(why)});
@@ -333,7 +333,7 @@ void Connection::deliver(Outcome outcome) {
   tell_.call_at(loop_.now());
 }
 
-void Connection::tell() {
+void Connection::report_outcome() {
   if (auto outcome = std::exchange(outcome_, std::nullopt)) call_done(std::move(*outcome));
 }
 
@@ -465,38 +465,38 @@ void Connections::retry_now() {
 }
 
 /// Null if no request is in flight, or two.
-const Connection* Connections::the_busy_one() const {
+const Connection* Connections::busy_connection() const {
   const bool is_second = second_ && second_->busy();
   if (first_.busy()) return is_second ? nullptr : &first_;
   return is_second ? second_.get() : nullptr;
 }
 
-void Connections::get_ready() {
-  const Connection* const busy = the_busy_one();
+void Connections::preconnect() {
+  const Connection* const busy = busy_connection();
   if (busy == nullptr || std::exchange(has_tried_, true)) return;
   if (!second_) second_ = first_.another();
   peer_of(*busy)->open();
 }
 
 bool Connections::is_ready() const {
-  const Connection* const busy = the_busy_one();
+  const Connection* const busy = busy_connection();
   return busy != nullptr && (busy == &first_ ? second_ && second_->is_connected() : first_.is_connected());
 }
 
-std::optional<Sent> Connections::has_arrived() const {
-  const Connection* const busy = the_busy_one();
+std::optional<SendTimes> Connections::has_arrived() const {
+  const Connection* const busy = busy_connection();
   return busy == nullptr ? std::nullopt : busy->has_arrived();
 }
 
 /// If both connections are idle, at most one is open.
-Connection& Connections::one_for_the_next() {
-  if (const Connection* const busy = the_busy_one()) return *peer_of(*busy);
+Connection& Connections::select_connection() {
+  if (const Connection* const busy = busy_connection()) return *peer_of(*busy);
   return second_ && second_->is_connected() ? *second_ : first_;
 }
 
 void Connections::send(Request request, std::function<void(Outcome)> done) {
   icd::require(!busy() || is_ready());
-  Connection& one = one_for_the_next();
+  Connection& one = select_connection();
   request.goes_ahead = busy();
   one.send(std::move(request), [this, &one, done = std::move(done)](Outcome outcome) {
     on_ended(one);

@@ -67,7 +67,7 @@ class LinkPace {
   std::uint64_t delivery_rate() const;
 
  private:
-  void tell(int fd);
+  void apply_pace(int fd);
 
   std::optional<pace::Delivery> delivery_;
   std::uint64_t told_ = 0;  // the pace that the socket has
@@ -117,7 +117,7 @@ class Connection {
   /// The earlier request on the other connection has ended. From now on the peer's silence counts.
   void on_earlier_request_ended();
   /// When the request in flight left; nullopt until the peer's TCP has acknowledged all of it.
-  std::optional<Sent> has_arrived() const;
+  std::optional<SendTimes> has_arrived() const;
   bool is_connected() const { return socket_ && socket_->is_open; }
   /// Why the last attempt to connect failed, or "".
   const std::string& trouble() const { return attempts_.trouble(); }
@@ -160,19 +160,19 @@ class Connection {
 
   // Callbacks of the socket and the timers.
   void on_socket_ready();
-  void time_came();
-  void look();
+  void on_timer();
+  void update_pace();
   void check_silence();
 
   // Connecting and idling.
   void connect();
-  void connecting_ended(int error);
-  void connecting_failed(const std::string& why);
+  void on_connect_result(int error);
+  void on_connect_failed(const std::string& why);
   void rest();
   void on_idle_ended();
   void drop();
   void close_socket();
-  bool stays_warm() const;
+  bool keeps_idle() const;
 
   // For the server.
   bool is_silent() const { return exchange_ && wait_.is_silent; }
@@ -183,14 +183,14 @@ class Connection {
   void begin();
   void retry_request();
   void write();
-  void began_to_leave();
+  void on_first_write();
   bool read_answer();
   void schedule_listening() { timer_.call_at(exchange_->next_listening(loop_.now())); }
   void on_answered();
   void on_in_doubt(InDoubt doubt);
-  void never_sent(const std::string& reason);
+  void deliver_never_sent(const std::string& reason);
   void deliver(Outcome outcome);
-  void tell();
+  void report_outcome();
   void call_done(Outcome outcome);
 
   loop::Loop& loop_;
@@ -260,7 +260,7 @@ class Server : public std::enable_shared_from_this<Server> {
   void remove(Connection& one) { std::erase(connections_, &one); }
 
   /// True if connections may be open without a request.
-  bool keeps_warm() const { return !is_serial_ && loop_.now() >= cleared_until_; }
+  bool can_keep_idle() const { return !is_serial_ && loop_.now() >= cleared_until_; }
   /// A request on a new connection has had no answer for kSilence.
   void on_silence();
   /// `can_stay`: by HTTP. Returns true if the connection stays open.
@@ -300,9 +300,9 @@ class Servers {
 /// is sent when the earlier request has arrived, and before its answer.
 ///
 /// Some servers serve one connection at a time, so there are two connections no longer than necessary. The
-/// second one is made for a request (get_ready()). When a request ends, its connection is closed if the other
-/// one is busy; otherwise the other one is closed. Such a server then reads the other connection, and its
-/// silence counts only from then on (Request::goes_ahead).
+/// second one is made for a request (preconnect()). When a request ends, its connection is closed if the
+/// other one is busy; otherwise the other one is closed. Such a server then reads the other connection, and
+/// its silence counts only from then on (Request::goes_ahead).
 class Connections {
  public:
   /// `turn_came`: as Server::Turn::on_turn.
@@ -325,11 +325,11 @@ class Connections {
   }
 
   /// Opens a connection for the next request if one request is in flight. Tries once for each request.
-  void get_ready();
+  void preconnect();
   /// True if one request is in flight and a connection for the next one is open.
   bool is_ready() const;
   /// When the only request in flight left; nullopt until all of it has arrived.
-  std::optional<Sent> has_arrived() const;
+  std::optional<SendTimes> has_arrived() const;
 
   /// The server gets one connection at a time, and no request ahead.
   bool is_serial() const { return server_->is_serial(); }
@@ -348,9 +348,9 @@ class Connections {
   std::uint64_t delivers() const { return first_.delivers(); }
 
  private:
-  const Connection* the_busy_one() const;
+  const Connection* busy_connection() const;
   Connection* peer_of(const Connection& one) { return &one == &first_ ? second_.get() : &first_; }
-  Connection& one_for_the_next();
+  Connection& select_connection();
   void on_ended(Connection& one);
 
   const std::shared_ptr<Server> server_;
@@ -358,7 +358,7 @@ class Connections {
   Connection first_;
   std::unique_ptr<Connection> second_;  // null until it is needed
   Connection* latest_ = &first_;        // the connection of the last request
-  bool has_tried_ = false;              // get_ready() has tried since the last request
+  bool has_tried_ = false;              // preconnect() has tried since the last request
 };
 
 }  // namespace adit::uplink

@@ -88,8 +88,9 @@ std::optional<std::chrono::seconds> retry_after(const std::string& value,
 /// `body` without its Content-Encoding, though Adit asks for none. As it came if the coding is unknown, the
 /// bytes are invalid, or they would exceed `longest` bytes.
 std::string decode_body(std::string body, std::string_view coding, std::size_t longest) {
-  const bool is_gzip = icd::same_but_for_case(coding, "gzip") || icd::same_but_for_case(coding, "x-gzip");
-  if (!is_gzip && !icd::same_but_for_case(coding, "deflate")) return body;
+  const bool is_gzip =
+      icd::equals_ignoring_case(coding, "gzip") || icd::equals_ignoring_case(coding, "x-gzip");
+  if (!is_gzip && !icd::equals_ignoring_case(coding, "deflate")) return body;
   std::string text;
   codec::ContentDecoder decoder(is_gzip ? codec::ContentCoding::Gzip : codec::ContentCoding::Deflate, longest,
                                 [&text](std::string_view piece) -> icd::Checked<void> {
@@ -155,7 +156,7 @@ struct AnswerParser::Impl {
   }
 
   /// Whole, or Incomplete after a 1xx, which the final answer follows.
-  State head_and_body_done() {
+  State finish_message() {
     const unsigned status = parser->get().result_int();
     if (status >= kFirstFinal && status <= kLast) return State::Whole;
     // 101 would end HTTP on this connection. Adit never asks for that.
@@ -173,7 +174,7 @@ struct AnswerParser::Impl {
       if (error == http::error::need_more) return State::Incomplete;
       if (error) return on_malformed(error);
       if (parser->is_done()) {
-        if (const State state = head_and_body_done(); state != State::Incomplete) return state;
+        if (const State state = finish_message(); state != State::Incomplete) return state;
       } else if (used == 0) {
         return State::Incomplete;
       }
@@ -205,7 +206,7 @@ AnswerParser::State AnswerParser::feed_end() {
   if (impl_->parser->is_header_done()) impl_->parser->put_eof(error);
   if (error || !impl_->parser->is_done())
     return impl_->on_malformed("the peer closed the connection in the middle of its answer");
-  return impl_->head_and_body_done();
+  return impl_->finish_message();
 }
 
 int AnswerParser::status() const {
@@ -234,7 +235,7 @@ Answered AnswerParser::take_answer() {
   return answered;
 }
 
-bool AnswerParser::may_keep_alive() const {
+bool AnswerParser::can_keep_alive() const {
   return impl_->parser->keep_alive() && impl_->unread.empty();
 }
 int AnswerParser::too_long_status() const {
@@ -273,7 +274,7 @@ icd::ChunkedBytes head_of(const std::string& authority, const icd::BearerToken& 
 }
 
 /// The first `bytes` bytes of the pieces, or all pieces.
-std::span<iovec> first_of(std::span<iovec> pieces, std::size_t bytes) {
+std::span<iovec> first_bytes(std::span<iovec> pieces, std::size_t bytes) {
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     pieces[i].iov_len = std::min(pieces[i].iov_len, bytes);
     bytes -= pieces[i].iov_len;
@@ -289,13 +290,13 @@ std::optional<bool> redirects_to_slash(int status, std::string_view location, st
   constexpr std::string_view kScheme = "http://";
   const bool redirects = status == 301 || status == 302 || status == 307 || status == 308;
   if (!redirects) return {};
-  if (icd::same_but_for_case(location.substr(0, kScheme.size()), kScheme)) {
+  if (icd::equals_ignoring_case(location.substr(0, kScheme.size()), kScheme)) {
     location.remove_prefix(kScheme.size());
     std::string there(location.substr(0, location.find('/')));
     location.remove_prefix(there.size());
     const bool has_port = there.find(':', there.rfind(']') + 1) != std::string::npos;
     if (!has_port) there += ":80";
-    if (!icd::same_but_for_case(there, authority)) return {};
+    if (!icd::equals_ignoring_case(there, authority)) return {};
   }
   const bool has_slash = target.ends_with('/');
   const std::string_view longer = has_slash ? target : location, shorter = has_slash ? location : target;
@@ -325,7 +326,7 @@ void Exchange::begin(loop::Instant now, std::uint64_t sent_twice) {
 }
 
 bool Exchange::release(loop::Instant now) {
-  if (!holds_back() || now < request_.last_byte_not_before) return false;
+  if (!is_limited() || now < request_.last_byte_not_before) return false;
   may_go_ = total_;
   return true;
 }
@@ -337,7 +338,7 @@ int Exchange::write(int fd) {
     const auto unsent = chunk->subspan(count == 0 ? within_chunk_ : 0);
     pieces[count++] = {const_cast<std::uint8_t*>(unsent.data()), unsent.size()};
   }
-  const std::span<iovec> may_go = first_of(std::span(pieces).first(count), may_go_ - sent_);
+  const std::span<iovec> may_go = first_bytes(std::span(pieces).first(count), may_go_ - sent_);
   const auto taken =
       bytes_per_second_ > 0 ? write_evenly(fd, may_go, bytes_per_second_) : uplink::write(fd, may_go);
   if (taken) {
@@ -397,7 +398,7 @@ Answered Exchange::take_answer() {
   return answered;
 }
 
-Sent Exchange::sent_times(const Transmission& seen, loop::Instant now) const {
+SendTimes Exchange::sent_times(const Transmission& seen, loop::Instant now) const {
   if (seen.sent_twice != sent_twice_) return {.first = now, .last = now};
   if (sent_ < total_) return {.first = first_left_, .last = now};
   return {.first = first_left_, .last = std::max(first_left_, now - seen.since_last_byte)};
@@ -405,7 +406,7 @@ Sent Exchange::sent_times(const Transmission& seen, loop::Instant now) const {
 
 void Exchange::listen(int fd, loop::Instant now) {
   const std::size_t acknowledged = sent_ - std::min(sent_, unacknowledged_bytes(fd));
-  const bool nothing_to_hear = holds_back() && acknowledged == may_go_;
+  const bool nothing_to_hear = is_limited() && acknowledged == may_go_;
   if (acknowledged <= acknowledged_ && !nothing_to_hear && !request_.goes_ahead) return;
   acknowledged_ = acknowledged;
   heard_ = now;
@@ -414,7 +415,7 @@ void Exchange::listen(int fd, loop::Instant now) {
 loop::Instant Exchange::next_listening(loop::Instant now) const {
   const auto pause = is_early_ ? kLook : request_.answer_within / kListenings;
   const auto next = std::min<loop::Instant>(now + pause, silent_at());
-  return holds_back() ? std::min(next, request_.last_byte_not_before) : next;
+  return is_limited() ? std::min(next, request_.last_byte_not_before) : next;
 }
 
 std::string Exchange::sentence(const std::string& what) const {

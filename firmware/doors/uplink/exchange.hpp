@@ -39,7 +39,7 @@ struct Request {
 /// When the first and the last byte of a request left, to about 10 ms, rather too late than too early. If
 /// bytes were sent twice or not all were sent, `last` is the time of the answer. If bytes were sent twice, so
 /// is `first`, because the first byte may be one of them.
-struct Sent {
+struct SendTimes {
   loop::Instant first{}, last{};
 };
 
@@ -52,7 +52,7 @@ struct Answered {
   std::optional<std::chrono::seconds> retry_after;    // from now, also if the field is a date
   std::optional<std::chrono::sys_seconds> date = {};  // by the peer's clock
   std::optional<bool> wants_slash = {};               // redirects_to_slash()
-  Sent sent = {};
+  SendTimes sent = {};
   loop::Instant began = {};  // when the first byte was given to the kernel
 
   /// The server redirects to the other form of the path and has not processed the request (RFC 9110 15.4.8,
@@ -104,7 +104,7 @@ class AnswerParser {
   /// For Whole. A body with a Content-Encoding is decoded, if that takes at most `longest_body`.
   Answered take_answer();
   /// For Whole: both sides allow reuse of the connection, and no bytes followed the answer.
-  bool may_keep_alive() const;
+  bool can_keep_alive() const;
   /// For Malformed: the status if the only fault is the length; else 0.
   int too_long_status() const;
   /// For Malformed: a sentence on the fault.
@@ -133,7 +133,7 @@ class Exchange {
   /// written.
   int write(int fd);
   /// Call this right after the first write().
-  void began_to_leave(loop::Instant now) { first_left_ = now; }
+  void on_first_write(loop::Instant now) { first_left_ = now; }
   bool wants_to_write() const { return !write_broken_ && sent_ < may_go_; }
   /// Releases the bytes that were held back, if it is time. True if they were released now.
   bool release(loop::Instant now);
@@ -153,8 +153,8 @@ class Exchange {
   int status() const { return parser_.status(); }
   std::string take_part() { return parser_.take_part(); }
   /// When the request left. Call this after its answer, with the kernel's values read just before `now`.
-  Sent sent_times(const Transmission& seen, loop::Instant now) const;
-  bool may_keep_alive() const { return sent_ == total_ && !is_early_ && parser_.may_keep_alive(); }
+  SendTimes sent_times(const Transmission& seen, loop::Instant now) const;
+  bool can_keep_alive() const { return sent_ == total_ && !is_early_ && parser_.can_keep_alive(); }
   /// For Lost.
   InDoubt doubt() const { return {.why = fault_, .too_long_status = parser_.too_long_status()}; }
 
@@ -188,7 +188,7 @@ class Exchange {
   loop::Instant silent_at() const { return heard_ + request_.answer_within; }
   Answer on_lost(const std::string& why);
   void advance(std::size_t bytes);
-  bool holds_back() const { return may_go_ < total_; }
+  bool is_limited() const { return may_go_ < total_; }
 
   std::string authority_;
   Request request_;                     // its body: in chunks_

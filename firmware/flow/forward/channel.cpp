@@ -51,7 +51,7 @@ bool is_too_large(icd::Uri uri, const uplink::Outcome& outcome) {
          answered->status == dispatch::kTooLarge;
 }
 
-bool comes_from_another(const uplink::Outcome& outcome, dispatch::Body body) {
+bool is_other_server(const uplink::Outcome& outcome, dispatch::Body body) {
   if (const auto* answered = std::get_if<uplink::Answered>(&outcome))
     return !answered->wants_slash && !dispatch::is_plausible_answer(answered->status, body);
   const auto* doubt = std::get_if<uplink::InDoubt>(&outcome);
@@ -66,7 +66,7 @@ void LastAnswer::note(const Request& request, const uplink::Outcome& outcome) {
   const dispatch::Body body = body_of(outcome);
   const bool no_status = lacks_status(request.uri, outcome);
   const bool too_large = is_too_large(request.uri, outcome);
-  const bool is_foreign = no_status || (!too_large && comes_from_another(outcome, body));
+  const bool is_foreign = no_status || (!too_large && is_other_server(outcome, body));
   if (is_foreign) ++foreign_;
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
   if (answered != nullptr && answered->status == icd::kTooManyRequests) ++throttled_;
@@ -77,7 +77,7 @@ void LastAnswer::note(const Request& request, const uplink::Outcome& outcome) {
   if (answered != nullptr) {
     status_ = answered->status;
     // Only the Command Post's own clock counts.
-    if (answered->date && !is_foreign_ && dispatch::is_the_command_post(status_, body)) {
+    if (answered->date && !is_foreign_ && dispatch::is_from_command_post(status_, body)) {
       constexpr double kHalf = 0.5;  // Date has whole seconds
       date_ = static_cast<double>(answered->date->time_since_epoch().count()) + kHalf;
       dated_ = heard_;
@@ -141,9 +141,9 @@ bool is_success_page(const uplink::Outcome& outcome) {
          dispatch::body_of(answered->body) == dispatch::Body::Other;
 }
 
-bool may_concern_the_message(const uplink::Outcome& outcome) {
+bool can_concern_message(const uplink::Outcome& outcome) {
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
-  return answered != nullptr && dispatch::may_concern_a_part(answered->status);
+  return answered != nullptr && dispatch::can_concern_part(answered->status);
 }
 
 /// The server has a status at this path, or rejects the token there.
@@ -210,8 +210,8 @@ void Channel::send(icd::Uri uri, std::string_view content_type, icd::ChunkedByte
   const bool is_trial = icd::reply_of(uri) == icd::Reply::RunStatus && is_trial_due_;
   const bool is_report = icd::reply_of(uri) == icd::Reply::Report;
   const bool has_slash = is_report ? reports_want_slash_.value_or(wants_slash_) : wants_slash_ != is_trial;
-  const auto under_way = std::make_shared<UnderWay>(loop_.now(), uri, body.size(), has_slash, is_trial,
-                                                    is_on_trial, std::move(done));
+  const auto under_way = std::make_shared<InFlightRequest>(loop_.now(), uri, body.size(), has_slash, is_trial,
+                                                           is_on_trial, std::move(done));
   connection_->send({.method = std::string(icd::method_of(uri)),
                      .target = std::string(icd::path_of(uri)) + (has_slash ? "/" : ""),
                      .content_type = std::string(content_type),
@@ -223,13 +223,13 @@ void Channel::send(icd::Uri uri, std::string_view content_type, icd::ChunkedByte
   under_way_.push_back(under_way);
 }
 
-std::optional<uplink::Sent> Channel::has_arrived() const {
+std::optional<uplink::SendTimes> Channel::has_arrived() const {
   return connection_ ? connection_->has_arrived() : std::nullopt;
 }
 
-void Channel::on_ended(const std::shared_ptr<UnderWay>& request, uplink::Outcome outcome) {
-  const bool is_vain = (request->is_trial && !knows_path(outcome)) ||
-                       (request->is_on_trial && may_concern_the_message(outcome));
+void Channel::on_ended(const std::shared_ptr<InFlightRequest>& request, uplink::Outcome outcome) {
+  const bool is_vain =
+      (request->is_trial && !knows_path(outcome)) || (request->is_on_trial && can_concern_message(outcome));
   last_.note({.uri = request->uri, .sent_at = request->sent_at, .bytes = request->bytes, .is_vain = is_vain},
              outcome);
   learn_path(*request, outcome);
@@ -242,7 +242,7 @@ void Channel::on_ended(const std::shared_ptr<UnderWay>& request, uplink::Outcome
   done(std::move(outcome));
 }
 
-void Channel::learn_path(const UnderWay& request, const uplink::Outcome& outcome) {
+void Channel::learn_path(const InFlightRequest& request, const uplink::Outcome& outcome) {
   const bool is_status = icd::reply_of(request.uri) == icd::Reply::RunStatus;
   const bool is_page = is_status && is_success_page(outcome);
   if (is_status) is_trial_due_ = is_page && !request.is_trial;

@@ -112,8 +112,8 @@ class Channel {
   /// Resets the only request in flight. Its `done` is not called.
   void give_way();
   /// Prepares for a request ahead of the answer to the first.
-  void get_ready() {
-    if (!next_ && connection_) connection_->get_ready();
+  void preconnect() {
+    if (!next_ && connection_) connection_->preconnect();
   }
   /// uplink::Connections::is_serial()
   bool is_serial() const { return connection_ && connection_->is_serial(); }
@@ -124,7 +124,7 @@ class Channel {
   /// True if a second request can go ahead. False before a change of the way.
   bool can_go_ahead() const { return !next_ && connection_ && connection_->is_ready(); }
   /// uplink::Connections::has_arrived()
-  std::optional<uplink::Sent> has_arrived() const;
+  std::optional<uplink::SendTimes> has_arrived() const;
   bool is_connected() const { return connection_ && connection_->is_connected(); }
   /// uplink::Connection::retry_now()
   void retry_now() {
@@ -150,7 +150,7 @@ class Channel {
   std::uint64_t bytes_sent() const { return finished_bytes_ + (connection_ ? connection_->sent_bytes() : 0); }
 
  private:
-  struct UnderWay {
+  struct InFlightRequest {
     loop::Instant sent_at;
     icd::Uri uri;
     std::size_t bytes;  // of its body
@@ -161,8 +161,8 @@ class Channel {
   };
   void set_access(EndpointAccess way);
   bool leads_elsewhere(const EndpointAccess& way) const;
-  void on_ended(const std::shared_ptr<UnderWay>& request, uplink::Outcome outcome);
-  void learn_path(const UnderWay& request, const uplink::Outcome& outcome);
+  void on_ended(const std::shared_ptr<InFlightRequest>& request, uplink::Outcome outcome);
+  void learn_path(const InFlightRequest& request, const uplink::Outcome& outcome);
 
   loop::Loop& loop_;
   uplink::Servers& servers_;
@@ -179,7 +179,7 @@ class Channel {
   bool has_page_ = false;
   bool is_trial_due_ = false;  // for the next status
   std::optional<EndpointAccess> next_;
-  std::vector<std::shared_ptr<UnderWay>> under_way_;  // at most two, oldest first
+  std::vector<std::shared_ptr<InFlightRequest>> under_way_;  // at most two, oldest first
   std::uint64_t finished_bytes_ = 0;
   LastAnswer last_;
 };

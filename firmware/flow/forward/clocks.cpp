@@ -12,26 +12,28 @@
 
 namespace adit::forward {
 
-std::expected<StampFloor::Kept, std::string> StampFloor::read() const {
-  if (!host::may_exist(file_)) return Kept{};
+std::expected<StampFloor::StoredFloor, std::string> StampFloor::read() const {
+  if (!host::can_exist(file_)) return StoredFloor{};
   const auto text = ADIT_TRY(host::read_file(file_));
-  const auto one = store::value_in<Kept>(text), other = store::value_in<Kept>(text, store::kOnDisk.align);
+  const auto one = store::value_in<StoredFloor>(text),
+             other = store::value_in<StoredFloor>(text, store::kOnDisk.align);
   if (!one || !other)
     host::log(host::Level::Warning, "a copy of the last time stamps is damaged",
               {{"file", file_}, {"now", one || other ? "the other copy is used" : "stamps may go back"}});
-  const Kept none{.is_damaged = true}, &first = one ? *one : none, &second = other ? *other : none;
+  const StoredFloor none{.is_damaged = true}, &first = one ? *one : none, &second = other ? *other : none;
   return first.floor < second.floor ? second : first;  // a power cut may have left an older copy
 }
 
-std::optional<StampFloor::Kept> StampFloor::due(double now, double wall, const ledger::LedgerFacts& ledger) {
+std::optional<StampFloor::StoredFloor> StampFloor::due(double now, double wall,
+                                                       const ledger::LedgerFacts& ledger) {
   const bool is_soon = ledger != ledger_ || outcome_->has_failed;
   if (now < last_ + (is_soon ? kSoon : kEvery)) return {};
   last_ = now;
   ledger_ = ledger;
-  return Kept{.floor = now + kAhead, .wall = wall, .ledger = ledger};
+  return StoredFloor{.floor = now + kAhead, .wall = wall, .ledger = ledger};
 }
 
-void StampFloor::write(const Kept& kept) {
+void StampFloor::write(const StoredFloor& kept) {
   const std::string file = store::file_of(kept, store::kOnDisk);
   auto written = host::write_file(file_, file, host::kOursAlone);
   if (!written && host::overwrite(file_, file)) written = {};  // for a full disk
@@ -60,8 +62,8 @@ void StampFloor::forget() {
 // Dispatch subtracts the step of a boot from a silence.
 static_assert(StampFloor::kAhead <= dispatch::kClockAhead);
 
-void Clocks::carry_on(journal::Carried& carried, const std::string& boot, double newest) {
-  const StampFloor::Kept kept = kept_.value_or(StampFloor::Kept());
+void Clocks::restore(journal::HandoverState& carried, const std::string& boot, double newest) {
+  const StampFloor::StoredFloor kept = kept_.value_or(StampFloor::StoredFloor());
   carried.set_boot(boot);
   const auto& clock = carried.clock();
   boot_ = clock || kept_ ? boot : "unknown";  // without the bound the clock is not carried on
@@ -94,7 +96,7 @@ journal::Clock Clocks::now() const {
 
 /// Whether stamps must not follow the box's clock: it is ahead by more than a season, and no other source has
 /// told a time near it. If one tells it during this boot, the next boot follows the clock.
-bool Clocks::is_far_beyond(double floor, const StampFloor::Kept& kept) const {
+bool Clocks::is_far_beyond(double floor, const StampFloor::StoredFloor& kept) const {
   const double known = std::max(floor, kept.floor - kept.lead.value_or(0));
   if (floor <= 0 || loop_.stamp_now() <= known + kSeason) return false;
   host::log(host::Level::Warning, "the clock is far ahead of the last time stamps; they go on from these");
@@ -103,7 +105,7 @@ bool Clocks::is_far_beyond(double floor, const StampFloor::Kept& kept) const {
 
 /// A boot may set both clocks back. The file corrects them, or else the ledger. Time off comes from the time
 /// of day, which may have been set long after the stamps began.
-void Clocks::begin_start(const StampFloor::Kept& kept, double newest) {
+void Clocks::begin_start(const StampFloor::StoredFloor& kept, double newest) {
   const double proven = newest > kept.overruled ? newest : 0, floor = std::max(kept.floor, proven);
   // A start uses stamps from the bound on before it stores the next one.
   if (kept_ && floor > kept.floor + (kept.floor > 0 ? StampFloor::kAhead : 0))
@@ -127,7 +129,7 @@ double Clocks::time_of_day(double stamp) const {
   return is_of_this_clock ? stamp + loop_.wall_now() - now : stamp;
 }
 
-bool Clocks::hear(double there) {
+bool Clocks::correct(double there) {
   if (off_.seconds <= 0) return false;
   const double off_there = there - off_.since - (loop_.stamp_now() - clock_step_.to);
   clock_step_.by -= std::clamp(off_there, 0.0, off_.seconds);

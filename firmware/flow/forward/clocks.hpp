@@ -27,7 +27,7 @@ namespace adit::forward {
 /// log (store/README.md) in two copies, with salt 0.
 class StampFloor {
  public:
-  struct Kept {
+  struct StoredFloor {
     double floor = 0, wall = 0;       // seconds since 1970; 0: unknown
     double least = 0;                 // lowest allowed stamp, for stamps of another box
     ledger::LedgerFacts ledger = {};  // a ledger with less is damaged
@@ -36,7 +36,7 @@ class StampFloor {
     double overruled = 0;     // times in the ledger up to it are no stamps, after forget()
     bool is_damaged = false;  // no copy is good; not in the file
 
-    friend bool operator==(const Kept&, const Kept&) = default;
+    friend bool operator==(const StoredFloor&, const StoredFloor&) = default;
   };
   static constexpr const char* kFile = "stamps";
   static constexpr double kEvery = 150;  // seconds
@@ -49,14 +49,14 @@ class StampFloor {
 
   /// Logs a damaged copy and uses the other one. All values are 0 without a good copy. An error: the file is
   /// unreadable, and must not be written.
-  std::expected<Kept, std::string> read() const;
+  std::expected<StoredFloor, std::string> read() const;
 
   /// The values to write now, if due. `now`: stamp clock; `wall`: time of day.
-  std::optional<Kept> due(double now, double wall, const ledger::LedgerFacts& ledger);
+  std::optional<StoredFloor> due(double now, double wall, const ledger::LedgerFacts& ledger);
   /// The next due() returns values.
   void make_due() { last_ = 0; }
   /// May run on a worker, one call at a time, on copies. Logs a failure when its text changes.
-  void write(const Kept& kept);
+  void write(const StoredFloor& kept);
   /// Stores these facts about the ledger, if the file is good and has less. For a process that could not read
   /// the file at its start, on the thread of write().
   void remember(const ledger::LedgerFacts& ledger);
@@ -80,13 +80,13 @@ class StampFloor {
 namespace adit {
 
 template <>
-inline constexpr auto store::kMembers<forward::StampFloor::Kept> =
-    std::tuple(&forward::StampFloor::Kept::floor, &forward::StampFloor::Kept::wall,
-               &forward::StampFloor::Kept::least, &forward::StampFloor::Kept::ledger,
-               &forward::StampFloor::Kept::lead, &forward::StampFloor::Kept::overruled);
+inline constexpr auto store::kMembers<forward::StampFloor::StoredFloor> =
+    std::tuple(&forward::StampFloor::StoredFloor::floor, &forward::StampFloor::StoredFloor::wall,
+               &forward::StampFloor::StoredFloor::least, &forward::StampFloor::StoredFloor::ledger,
+               &forward::StampFloor::StoredFloor::lead, &forward::StampFloor::StoredFloor::overruled);
 /// `is_damaged` is not in the file.
 template <>
-inline constexpr std::size_t store::kMemberCount<forward::StampFloor::Kept> = 6;
+inline constexpr std::size_t store::kMemberCount<forward::StampFloor::StoredFloor> = 6;
 
 }  // namespace adit
 
@@ -111,15 +111,15 @@ class Clocks {
   double lead() const { return is_told_ && *lead_ > StampFloor::kMostAhead ? *lead_ : 0; }
   /// Continues the clocks of the previous process and begins the journal. `boot`: the boot id.
   /// `newest`: the newest stamp in the ledger; 0: none.
-  void carry_on(journal::Carried& carried, const std::string& boot, double newest);
+  void restore(journal::HandoverState& carried, const std::string& boot, double newest);
 
   /// The stamp clock's step at this boot. The Command Post must confirm the time off, because the box's clock
   /// may be wrong by a year.
   const dispatch::ClockStep& clock_step() const { return clock_step_; }
   /// `there`: the Command Post's time of day. True: clock_step() changed.
-  bool hear(double there);
+  bool correct(double there);
   /// True if this box may have sent messages before this process.
-  bool ran_before() const { return ran_before_; }
+  bool has_run_before() const { return ran_before_; }
 
   /// The present time of day of a stamp in the ledger. Stamps of earlier boots and of another box stay as
   /// written.
@@ -133,33 +133,33 @@ class Clocks {
   /// Writes the bound of the stamps if it is due. Call now and then. The writer's thread waits for the disk.
   void keep(loop::Writer& writer, const ledger::LedgerFacts& ledger);
   /// The file is written at the next keep().
-  void wall_was_set() { floor_.make_due(); }
+  void on_wall_set() { floor_.make_due(); }
   /// The time of day by the stamps of robots: the earliest plausible one.
-  std::optional<double> told_by_robots() const {
+  std::optional<double> robots_time() const {
     return senders_.sender_time(loop_.stamp_now(), clock::kEarliest, clock::kLatest);
   }
 
  private:
   /// Time off by the box's clock, until confirmed.
-  struct Off {
+  struct Deviation {
     double seconds = 0, since = 0;
   };
   static constexpr double kSeason = clock::kRobotsMost;  // seconds that a box may be stored
-  void begin_start(const StampFloor::Kept& kept, double newest);
-  bool is_far_beyond(double floor, const StampFloor::Kept& kept) const;
+  void begin_start(const StampFloor::StoredFloor& kept, double newest);
+  bool is_far_beyond(double floor, const StampFloor::StoredFloor& kept) const;
   journal::Clock now() const;
   void keep() { journal_.record_senders(senders_.take_changed()); }
 
   loop::Loop& loop_;
   journal::Journal& journal_;
   StampFloor floor_;
-  const std::expected<StampFloor::Kept, std::string> kept_;  // from the previous process
+  const std::expected<StampFloor::StoredFloor, std::string> kept_;  // from the previous process
   std::string damage_;
-  std::optional<double> lead_;  // StampFloor::Kept::lead
+  std::optional<double> lead_;  // StampFloor::StoredFloor::lead
   bool is_told_ = false;        // in this process
   queues::StampShift senders_;
   dispatch::ClockStep clock_step_;
-  Off off_;
+  Deviation off_;
   std::string boot_;
   bool ran_before_ = false;
 };

@@ -19,7 +19,7 @@ std::vector<api::TrackPose> halve_poses(const std::vector<api::TrackPose>& poses
 }  // namespace
 
 void Tracks::on_forwarded(const std::string& robot, const api::TrackPose& pose) {
-  Kept& track = tracks_[robot];
+  StoredTrack& track = tracks_[robot];
   if (!track.poses.empty()) {
     const api::TrackPose& last = track.poses.back();
     const double least = has_moved(last, pose) ? track.spacing : std::max(kStill, track.spacing);
@@ -32,7 +32,7 @@ void Tracks::on_forwarded(const std::string& robot, const api::TrackPose& pose) 
   track.poses.push_back(pose);
 }
 
-void Tracks::go_on_from(const std::vector<api::Track>& earlier) {
+void Tracks::restore(const std::vector<api::Track>& earlier) {
   const auto later = std::exchange(tracks_, {});
   for (const auto& [robot, poses] : earlier) {
     for (const api::TrackPose& pose : poses) on_forwarded(robot, pose);
@@ -95,7 +95,7 @@ void MarkerScene::apply(const icd::Marker& marker, api::Time now) {
     case icd::MarkerAction::Add: {
       Entry entry{.marker = api::draw_marker(marker), .at = now, .version = version_};
       const auto [at, is_new] = entries_.try_emplace(key);
-      if (!is_new) let_go(at->second);
+      if (!is_new) release(at->second);
       return put(at, std::move(entry));
     }
   }
@@ -103,25 +103,25 @@ void MarkerScene::apply(const icd::Marker& marker, api::Time now) {
 
 void MarkerScene::remove(Entries::iterator at) {
   if (at == entries_.end() || at->second.gone) return;
-  let_go(at->second);
+  release(at->second);
   put(at, {.marker = {.ns = at->first.first}, .version = version_, .gone = true});
 }
 
 void MarkerScene::put(Entries::iterator at, Entry entry) {
-  Held& held = held_with(entry);
+  EntryList& held = list_of(entry);
   held.bytes += entry.marker.size();
   held.in_order.emplace_hint(held.in_order.end(), entry.version, at);
   at->second = std::move(entry);
 }
 
-void MarkerScene::let_go(const Entry& entry) {
-  Held& held = held_with(entry);
+void MarkerScene::release(const Entry& entry) {
+  EntryList& held = list_of(entry);
   held.bytes -= entry.marker.size();
   held.in_order.erase(entry.version);
 }
 
 void MarkerScene::keep_bounds() {
-  const auto exceeds = [](const Held& held) {
+  const auto exceeds = [](const EntryList& held) {
     return held.in_order.size() > kMost || held.bytes > kMostBytes;
   };
   while (exceeds(standing_)) {
@@ -132,7 +132,7 @@ void MarkerScene::keep_bounds() {
   while (exceeds(gone_)) {
     const auto [version, at] = *gone_.in_order.begin();
     forgotten_ = version;
-    let_go(at->second);
+    release(at->second);
     entries_.erase(at);
   }
 }
@@ -141,7 +141,7 @@ api::MarkerChanges MarkerScene::changes(std::uint64_t since) const {
   const bool whole = since < forgotten_ || since > version_ || since == 0;
   api::MarkerChanges changes{
       .version = version_, .whole = whole, .left_out = left_out_, .markers = {}, .gone = {}};
-  const auto news = [since, whole](const Held& held) {
+  const auto news = [since, whole](const EntryList& held) {
     const auto& all = held.in_order;
     return std::ranges::subrange(whole ? all.begin() : all.upper_bound(since), all.end());
   };
@@ -155,14 +155,14 @@ api::MarkerChanges MarkerScene::changes(std::uint64_t since) const {
 void DeliveredScene::on_forwarded(std::span<const icd::NamedPose> poses, api::Time now) {
   for (const icd::NamedPose& named : poses) {
     const std::string& name = named.name.text();
-    if (robots_.size() >= kMostRobots && !robots_.contains(name)) forget_the_oldest();
+    if (robots_.size() >= kMostRobots && !robots_.contains(name)) forget_oldest();
     const double heading = api::heading_of(named.pose.orientation);
     robots_[name] = {.name = name, .position = named.pose.position, .heading = heading, .at = now};
     tracks_.on_forwarded(name, {.at = now, .position = named.pose.position, .heading = heading});
   }
 }
 
-void DeliveredScene::forget_the_oldest() {
+void DeliveredScene::forget_oldest() {
   const auto oldest = std::ranges::min_element(robots_, {}, [](const auto& item) { return item.second.at; });
   tracks_.forget(oldest->first);
   robots_.erase(oldest);
@@ -183,7 +183,7 @@ void DeliveredScene::move(double seconds) {
   markers_.move(seconds);
 }
 
-void DeliveredScene::go_on_from(std::vector<api::Track> earlier) {
+void DeliveredScene::restore(std::vector<api::Track> earlier) {
   for (const api::Track& track : earlier) {
     if (!track.poses.empty()) before_[track.robot] = track.poses.back().at;
   }
@@ -194,7 +194,7 @@ void DeliveredScene::go_on_from(std::vector<api::Track> earlier) {
     robots_[track.robot] = {.name = track.robot, .position = last.position, .heading = last.heading};
     return false;
   });
-  tracks_.go_on_from(earlier);
+  tracks_.restore(earlier);
 }
 
 std::vector<facts::RobotRow> DeliveredScene::robots() const {

@@ -24,7 +24,7 @@ class Tracks {
   /// Callers bound the number of robots.
   void on_forwarded(const std::string& robot, const api::TrackPose& pose);
   /// Adds earlier poses before the present ones.
-  void go_on_from(const std::vector<api::Track>& earlier);
+  void restore(const std::vector<api::Track>& earlier);
   void wipe() { tracks_.clear(); }
   /// The time of day was set ahead by `seconds`.
   void move(double seconds);
@@ -34,11 +34,11 @@ class Tracks {
   std::vector<api::Track> tracks_after(api::Time since) const;
 
  private:
-  struct Kept {
+  struct StoredTrack {
     std::vector<api::TrackPose> poses;
     double spacing = kSpacing;
   };
-  std::map<std::string, Kept> tracks_;
+  std::map<std::string, StoredTrack> tracks_;
 };
 
 /// The Command Post's markers by ns and id, as drawn on a map, with changes by version. Beyond kMost or
@@ -75,14 +75,14 @@ class MarkerScene {
     bool gone = false;  // only the ns remains
   };
   /// By the id first, which differs most.
-  struct ByKey {
+  struct KeyLess {
     bool operator()(const Key& a, const Key& b) const {
       return a.second != b.second ? a.second < b.second : a.first < b.first;
     }
   };
-  using Entries = std::map<Key, Entry, ByKey>;
+  using Entries = std::map<Key, Entry, KeyLess>;
   using InOrder = std::map<std::uint64_t, Entries::iterator>;
-  struct Held {
+  struct EntryList {
     InOrder in_order;  // by version
     std::size_t bytes = 0;
   };
@@ -93,11 +93,11 @@ class MarkerScene {
   void clear();
   void keep_bounds();
   void put(Entries::iterator at, Entry entry);
-  void let_go(const Entry& entry);
-  Held& held_with(const Entry& entry) { return entry.gone ? gone_ : standing_; }
+  void release(const Entry& entry);
+  EntryList& list_of(const Entry& entry) { return entry.gone ? gone_ : standing_; }
 
   Entries entries_;  // with deleted ones
-  Held standing_, gone_;
+  EntryList standing_, gone_;
   std::uint64_t version_ = 0, forgotten_ = 0;  // forgotten_: last deletion not kept
   std::uint64_t left_out_ = 0;
 };
@@ -119,7 +119,7 @@ class DeliveredScene {
   void move(double seconds);
 
   /// Restores the tracks of this run from before a restart.
-  void go_on_from(std::vector<api::Track> earlier);
+  void restore(std::vector<api::Track> earlier);
 
   /// Last poses, by name.
   std::vector<facts::RobotRow> robots() const;
@@ -129,7 +129,7 @@ class DeliveredScene {
   const Tracks& tracks() const { return tracks_; }
 
  private:
-  void forget_the_oldest();
+  void forget_oldest();
 
   std::map<std::string, facts::RobotRow> robots_;
   std::map<std::string, api::Time> before_;

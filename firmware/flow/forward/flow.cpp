@@ -44,20 +44,20 @@ void LedgerUpkeep::tick(loop::Writer& disk) {
 }
 
 void LedgerUpkeep::on_done(const ledger::Result<void>& result) {
-  ledger_.upkeep_done(result);
+  ledger_.on_upkeep_done(result);
   if (result) at_ = loop_.now();
   const std::string why = result ? "" : result.error().what;
   if (std::exchange(trouble_, why) != why && !result)
     host::log(host::Level::Warning, "the ledger has no room in reserve", {{"why", why}});
 }
 
-RunNews::Change RunNews::look(const dispatch::Reports& reports) {
+RunNews::Change RunNews::update(const dispatch::Reports& reports) {
   const dispatch::Run& run = reports.run();
   const std::int64_t before = std::exchange(run_, run.number);
-  const bool is_heard = status_came(run);
+  const bool is_heard = update_clock(run);
   if (before == 0) return Change::FirstLook;
   if (before == run.number) {
-    const bool is_likely = is_heard && is_by_settings(run) && dispatch::tells_of_another(run);
+    const bool is_likely = is_heard && is_by_settings(run) && dispatch::can_show_other_run(run);
     return is_likely ? Change::LikelyAnother : Change::None;
   }
   next_map_ = next_map_after(before, reports);
@@ -68,7 +68,7 @@ RunNews::Change RunNews::look(const dispatch::Reports& reports) {
 dispatch::NextMap RunNews::next_map_after(std::int64_t before, const dispatch::Reports& reports) const {
   const dispatch::Run* const known = reports.runs().find(before);
   // The run goes on although another one seemed to begin.
-  if (reports.runs().may_be(before, reports.run().number)) return dispatch::NextMap::MayBeTheSame;
+  if (reports.runs().can_be(before, reports.run().number)) return dispatch::NextMap::MayBeTheSame;
   const bool is_here = known != nullptr && reports.runs().is_here(before) && is_by_settings(reports.run());
   return is_here ? dispatch::next_map(*known, reports.run()) : dispatch::NextMap::MayBeTheSame;
 }
@@ -79,7 +79,7 @@ bool RunNews::is_by_settings(const dispatch::Run& run) const {
 }
 
 /// True if the clock of the status has changed.
-bool RunNews::status_came(const dispatch::Run& run) {
+bool RunNews::update_clock(const dispatch::Run& run) {
   const auto& clock = run.status_clock;
   const double shows = clock ? clock->shows : 0;
   return std::exchange(clock_shown_, shows) != shows;
@@ -98,9 +98,9 @@ queues::Upload upload_of(const intake::Sender& sender) {
 }  // namespace
 
 std::shared_ptr<intake::MapArrival> Flow::begin_map() {
-  return maps_.arrives([this](icd::MapUpdate update, const intake::Sender& sender,
-                              std::shared_ptr<spool::MapFile> file,
-                              std::function<void(icd::Checked<void>)> done) {
+  return maps_.begin_map([this](icd::MapUpdate update, const intake::Sender& sender,
+                                std::shared_ptr<spool::MapFile> file,
+                                std::function<void(icd::Checked<void>)> done) {
     if (!standby_.empty()) return done(icd::refuse(icd::Status::ServiceUnavailable, standby_));
     accept(std::move(update), sender, std::move(file), std::move(done));
   });
@@ -146,7 +146,7 @@ std::string Tokens::strike_from(std::string sentence) const {
   return sentence;
 }
 
-void Flow::left_out(icd::Uri uri, const intake::Sender& sender, const std::string& why) {
+void Flow::record_dropped(icd::Uri uri, const intake::Sender& sender, const std::string& why) {
   host::log(host::Level::Info, "parts of a message rejected",
             {{"uri", std::string(icd::path_of(uri))},
              {"sender", sender.address},
@@ -183,13 +183,13 @@ std::expected<void, std::string> Flow::change_rejected(std::uint64_t number, api
 }
 
 void Flow::on_changed() {
-  picture_the_run();
+  update_picture();
   callbacks_.on_changed();
 }
 
-void Flow::picture_the_run() {
+void Flow::update_picture() {
   if (!has_started_) return;
-  switch (run_news_.look(reports())) {
+  switch (run_news_.update(reports())) {
     case RunNews::Change::None:
       return;
     case RunNews::Change::LikelyAnother:
@@ -205,7 +205,7 @@ void Flow::picture_the_run() {
       picture_.begin_run();
       break;
   }
-  keep_the_run();
+  restore_run();
 }
 
 namespace {
@@ -322,28 +322,28 @@ std::string Flow::put_aside() const {
 
 void Flow::start() {
   std::vector<dispatch::Run> runs = ledger_.runs();
-  carry_on(newest_in(runs));
+  restore_handover(newest_in(runs));
   scoring_.start(std::move(runs));
   telemetry_.start();
   has_started_ = true;
-  picture_the_run();
+  update_picture();
 }
 
-void Flow::stand_by(const std::string& why) {
+void Flow::set_standby(const std::string& why) {
   standby_ = why;
-  scoring_.stand_by();
-  maps_.stand_by();
-  telemetry_.stand_by();
+  scoring_.set_standby();
+  maps_.set_standby();
+  telemetry_.set_standby();
 }
 
 /// Rates and stamps go on without a gap.
-void Flow::carry_on(double newest) {
-  journal::Carried carried = journal_.read();
+void Flow::restore_handover(double newest) {
+  journal::HandoverState carried = journal_.read();
   const bool is_first = !carried.clock();
-  clocks_.carry_on(carried, host::boot(), newest);
-  scoring_.carry_on(carried);
-  maps_.carry_on(carried, clocks_.ran_before());
-  telemetry_.carry_on(carried);
+  clocks_.restore(carried, host::boot(), newest);
+  scoring_.restore(carried);
+  maps_.restore(carried, clocks_.has_run_before());
+  telemetry_.restore(carried);
   restore(is_first);
   heard_before_ = carried.heard_by_robot();
   restore_counts(counts_, heard_before_, loop_);
@@ -352,11 +352,11 @@ void Flow::carry_on(double newest) {
 /// Messages in files. Without a journal the last sending is unknown: maps get new stamps, all requests wait.
 void Flow::restore(bool is_first) {
   rejected_.restore();
-  spool::Spool::Kept kept = spool_.read();
+  spool::Spool::KeptMaps kept = spool_.read();
   if (is_first && !kept.empty()) {
-    scoring_.hold_back();
-    maps_.hold_back();
-    telemetry_.hold_back();
+    scoring_.assume_just_sent();
+    maps_.assume_just_sent();
+    telemetry_.assume_just_sent();
   }
   for (spool::Spool::KeptMap& each : kept) {
     if (is_first) each.map.header().stamp = loop_.stamp_now();
@@ -367,20 +367,20 @@ void Flow::restore(bool is_first) {
 void Flow::on_settings_changed(const settings::Restarts& restarts, Tokens tokens) {
   tokens_ = std::move(tokens);
   archive_.limit(limits_of(settings_));
-  spool_.leave_to_others(bytes_without_maps(settings_));
+  spool_.set_reserved(bytes_without_maps(settings_));
   if (restarts.scoring)
-    scoring_.endpoint_changed(tokens_.scoring);  // first: no more requests to the old endpoint
-  if (restarts.mapping) maps_.endpoint_changed(tokens_.mapping);
-  if (restarts.mapping) telemetry_.endpoint_changed(tokens_.mapping);
+    scoring_.on_endpoint_changed(tokens_.scoring);  // first: no more requests to the old endpoint
+  if (restarts.mapping) maps_.on_endpoint_changed(tokens_.mapping);
+  if (restarts.mapping) telemetry_.on_endpoint_changed(tokens_.mapping);
   scoring_.on_settings_changed();
   maps_.on_settings_changed();
   telemetry_.on_settings_changed();
 }
 
-void Flow::link_is_back() {
-  scoring_.link_is_back();
-  maps_.link_is_back();
-  telemetry_.link_is_back();
+void Flow::on_link_up() {
+  scoring_.on_link_up();
+  maps_.on_link_up();
+  telemetry_.on_link_up();
 }
 
 void Flow::tick(loop::Writer& disk) {
@@ -392,12 +392,12 @@ void Flow::tick(loop::Writer& disk) {
 }
 
 KnownTimes Flow::known_times() const {
-  return {.command_post = scoring_.channel().last().command_post_time(), .robots = clocks_.told_by_robots()};
+  return {.command_post = scoring_.channel().last().command_post_time(), .robots = clocks_.robots_time()};
 }
 
 /// Stamps, the ledger and earlier runs keep their times.
-void Flow::wall_was_set(double seconds) {
-  clocks_.wall_was_set();
+void Flow::on_wall_set(double seconds) {
+  clocks_.on_wall_set();
   counts_.move(seconds);
   delivered_.move(seconds);
   picture_.move(seconds);
@@ -473,18 +473,18 @@ api::RunRow facts_of(const Flow& flow, const std::string& course) {
 }  // namespace
 
 /// Restores the present run, then records it.
-void Flow::keep_the_run() {
+void Flow::restore_run() {
   const dispatch::Run& run = reports().run();
   picture_.hold();
   archive_.begin({.run = run.number, .began = run.began, .post = run.post},
                  [this](picture::Mosaic picture, std::vector<api::Track> tracks) -> const picture::Mosaic& {
-                   delivered_.go_on_from(std::move(tracks));
-                   picture_.go_on_from(std::move(picture));
+                   delivered_.restore(std::move(tracks));
+                   picture_.restore(std::move(picture));
                    return picture_.mosaic();
                  });
 }
 
-archive::Seen Flow::archive_view() const {
+archive::RunSnapshot Flow::archive_view() const {
   return {.now = loop_.wall_now(),
           .stamp = loop_.stamp_now(),
           .picture = picture_.mosaic(),

@@ -111,13 +111,13 @@ class RunNews {
   explicit RunNews(const settings::Settings& settings) : settings_(settings) {}
 
   /// The change since the last look.
-  Change look(const dispatch::Reports& reports);
+  Change update(const dispatch::Reports& reports);
   dispatch::NextMap next_map() const { return next_map_; }
 
  private:
   dispatch::NextMap next_map_after(std::int64_t before, const dispatch::Reports& reports) const;
   bool is_by_settings(const dispatch::Run& run) const;
-  bool status_came(const dispatch::Run& run);
+  bool update_clock(const dispatch::Run& run);
 
   const settings::Settings& settings_;
   std::int64_t run_ = 0;    // at the last look; 0: none yet
@@ -172,7 +172,7 @@ class Flow final : public intake::MessageHandler, public api::Operator {
   /// All files of messages can be read now.
   static bool can_be_read(const std::string& runtime_folder);
   /// Before start(): accepts and sends no message. Clients get the sentence `why`.
-  void stand_by(const std::string& why);
+  void set_standby(const std::string& why);
   /// `restarts`: endpoints with a new address, way or token. Clients keep waiting.
   void on_settings_changed(const settings::Restarts& restarts, Tokens tokens);
   /// Once a second. `disk`: for small files of the state directory.
@@ -182,9 +182,9 @@ class Flow final : public intake::MessageHandler, public api::Operator {
   /// Clocks::set_known_time().
   void set_known_time(double time) { clocks_.set_known_time(time); }
   /// The time of day was set ahead by `seconds`.
-  void wall_was_set(double seconds);
+  void on_wall_set(double seconds);
   /// The cable is in again: retries at once.
-  void link_is_back();
+  void on_link_up();
   /// Stops sending, waits for answers in flight, stores messages, and calls `over`.
   void end(std::function<void()> over);
   bool is_ending() const { return ending_.has_begun(); }
@@ -195,7 +195,7 @@ class Flow final : public intake::MessageHandler, public api::Operator {
   void accept(const icd::ArtifactReport& report, const intake::Sender& sender,
               std::shared_ptr<intake::Responder> responder) override;
   void status(const intake::Sender& sender, std::shared_ptr<intake::Responder> responder) override;
-  void left_out(icd::Uri uri, const intake::Sender& sender, const std::string& why) override;
+  void record_dropped(icd::Uri uri, const intake::Sender& sender, const std::string& why) override;
   void on_rejected(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& callbacks) override;
 
   /// When the operator's test may send one status request or state, as a turn of the run's pace. nullopt: not
@@ -233,7 +233,7 @@ class Flow final : public intake::MessageHandler, public api::Operator {
   const TrafficCounts& counts() const { return counts_; }
   const DeliveredScene& delivered_scene() const { return delivered_; }
   const picture::Mosaic& picture() const { return picture_.mosaic(); }
-  api::FinerMap& finer() { return picture_.finer(); }
+  api::FineMap& fine_map() { return picture_.fine_map(); }
   api::CoveredMap& covered_map() { return picture_.covered_map(); }
   archive::Archive& archive() { return archive_; }
   const archive::Archive& archive() const { return archive_; }
@@ -253,14 +253,14 @@ class Flow final : public intake::MessageHandler, public api::Operator {
   UriPace& pace_of(icd::Uri uri) {
     return icd::endpoint_of(uri) == icd::Endpoint::Scoring ? scoring_.status_pace() : telemetry_.state_pace();
   }
-  void carry_on(double newest);
+  void restore_handover(double newest);
   void restore(bool is_first);
   void accept(icd::MapUpdate update, const intake::Sender& sender, std::shared_ptr<spool::MapFile> file,
               std::function<void(icd::Checked<void>)> done);
   void on_changed();
-  void picture_the_run();
-  void keep_the_run();
-  archive::Seen archive_view() const;
+  void update_picture();
+  void restore_run();
+  archive::RunSnapshot archive_view() const;
   void drain();
 
   loop::Loop& loop_;

@@ -25,8 +25,8 @@ std::size_t bytes_of(const picture::FineBlock& tiles) {
 }  // namespace
 
 struct FineTiles::Job {
-  Place place;
-  Of of;
+  BlockKey place;
+  BlockSource of;
   std::vector<Asker> askers;
   std::vector<std::shared_ptr<const picture::ForwardedGrid>> grids;
   std::optional<picture::FineBlock> tiles{};
@@ -38,12 +38,12 @@ void FineTiles::clear() {
   drawn_bytes_ = 0;
 }
 
-FineTiles::Of FineTiles::areas_at(const Place& place) const {
+FineTiles::BlockSource FineTiles::areas_at(const BlockKey& place) const {
   return {.newest = grids_.newest_in(place.layer, picture::area_of(place.over)),
           .base = mosaic_.tile(place.layer, base_of(place.over), {}).tile};
 }
 
-const picture::FineBlock* FineTiles::find_block(const Place& place, const Of& of) {
+const picture::FineBlock* FineTiles::find_block(const BlockKey& place, const BlockSource& of) {
   const auto found = drawn_.find(place);
   if (found == drawn_.end() || found->second.of != of) return nullptr;
   found->second.used = ++uses_;
@@ -51,9 +51,9 @@ const picture::FineBlock* FineTiles::find_block(const Place& place, const Of& of
 }
 
 void FineTiles::tile(const picture::Layer& layer, const picture::TileIndex& at, Done done) {
-  const Place place{layer, picture::coarser(at)};
-  const Of now = areas_at(place);
-  const auto finer = grids_.finer(layer, 0);
+  const BlockKey place{layer, picture::coarser(at)};
+  const BlockSource now = areas_at(place);
+  const auto finer = grids_.finer_levels(layer, 0);
   if (now.newest == 0 || !finer || at.level < finer->level) return done(nullptr);
   if (const auto* tiles = find_block(place, now)) return done((*tiles)[picture::place_in_block(at)]);
   std::size_t waiting = 0;
@@ -68,11 +68,11 @@ void FineTiles::tile(const picture::Layer& layer, const picture::TileIndex& at, 
 
 void FineTiles::pump() {
   while (!is_drawing_ && !waiting_.empty()) {
-    const Place place = std::move(waiting_.front());
+    const BlockKey place = std::move(waiting_.front());
     waiting_.pop_front();
     auto askers = std::move(askers_[place]);
     askers_.erase(place);
-    Of now = areas_at(place);
+    BlockSource now = areas_at(place);
     const auto* tiles = find_block(place, now);
     if (tiles == nullptr) return draw(place, std::move(now), std::move(askers));
     for (const Asker& asker : askers) asker.done((*tiles)[picture::place_in_block(asker.at)]);
@@ -80,7 +80,7 @@ void FineTiles::pump() {
 }
 
 /// Later requests wait for the next block, because a grid may arrive.
-void FineTiles::draw(const Place& place, Of of, std::vector<Asker> askers) {
+void FineTiles::draw(const BlockKey& place, BlockSource of, std::vector<Asker> askers) {
   is_drawing_ = true;
   const auto job =
       std::make_shared<Job>(Job{.place = place,
@@ -110,8 +110,8 @@ void FineTiles::on_drawn(const Job& job) {
   pump();
 }
 
-void FineTiles::keep(const Place& place, const Of& of, const picture::FineBlock& tiles) {
-  Drawn& drawn = drawn_[place];
+void FineTiles::keep(const BlockKey& place, const BlockSource& of, const picture::FineBlock& tiles) {
+  CachedBlock& drawn = drawn_[place];
   drawn_bytes_ -= drawn.bytes;
   drawn = {.of = of, .tiles = tiles, .bytes = bytes_of(tiles), .used = ++uses_};
   drawn_bytes_ += drawn.bytes;
@@ -136,7 +136,7 @@ std::optional<icd::GridBounds> bounds_of(const icd::MapUpdate& map) {
 struct CoveredCount::Job {
   std::vector<Done> askers;
   picture::CoveredArea::Changes changes;
-  std::optional<picture::Covered> covered{};
+  std::optional<picture::Coverage> covered{};
 };
 
 void CoveredCount::count(Done done) {
@@ -176,7 +176,7 @@ void CoveredCount::on_counted(const Job& job) {
 }
 
 struct MapPicture::Job {
-  Waiting waiting;
+  QueuedDrawing waiting;
   picture::Canvas canvas;
   icd::Checked<picture::Drawing> drawing = icd::refuse(icd::Status::ServiceUnavailable, "no memory");
   std::shared_ptr<const picture::ForwardedGrid> forwarded{};  // null for a cloud
@@ -192,7 +192,7 @@ MapPicture::MapPicture(loop::Loop& loop, loop::Workers& workers, std::function<v
 
 void MapPicture::on_forwarded(icd::MapUpdate map) {
   auto bounds = bounds_of(map);
-  std::erase_if(waiting_, [&](const Waiting& older) {
+  std::erase_if(waiting_, [&](const QueuedDrawing& older) {
     if (!bounds || !older.bounds || map.name != older.map.name) return false;
     if (!icd::covers(std::get<icd::OccupancyGrid>(map.msg), *older.bounds)) return false;
     bounds = icd::joint_bounds(*bounds, *older.bounds);
@@ -209,10 +209,10 @@ void MapPicture::on_forwarded(icd::MapUpdate map) {
   wake_.call_at(loop_.now());  // the next map may be packed first
 }
 
-void MapPicture::go_on_from(picture::Mosaic earlier) {
+void MapPicture::restore(picture::Mosaic earlier) {
   held_until_ = {};
   const auto before = mosaic_.version();
-  mosaic_.take_up(std::move(earlier), loop_.wall_now());
+  mosaic_.restore(std::move(earlier), loop_.wall_now());
   if (mosaic_.version() != before) changed_();
   pump();
 }
@@ -227,20 +227,20 @@ void MapPicture::begin_run() {
 
 void MapPicture::move(double seconds) {
   mosaic_.move(seconds);
-  for (Waiting& waiting : waiting_) waiting.stamp += seconds;
+  for (QueuedDrawing& waiting : waiting_) waiting.stamp += seconds;
   if (drawing_) *drawing_ += seconds;
 }
 
 void MapPicture::pump() {
   if (drawing_ || waiting_.empty()) return;
   if (loop_.now() < held_until_) return wake_.call_at(held_until_);
-  Waiting next = std::move(waiting_.front());
+  QueuedDrawing next = std::move(waiting_.front());
   waiting_.pop_front();
   waiting_bytes_ -= next.map.data.bytes.size();
   draw(std::move(next));
 }
 
-void MapPicture::draw(Waiting waiting) {
+void MapPicture::draw(QueuedDrawing waiting) {
   drawing_ = waiting.stamp;
   auto job = std::make_shared<Job>(Job{std::move(waiting), {}});
   job->canvas = mosaic_.canvas(picture::layer_of(job->waiting.map));

@@ -21,7 +21,7 @@ namespace adit::forward {
 
 /// Finer tiles of delivered grids. A worker draws one block at a time on request and gives way to messages.
 /// Blocks are kept until a grid arrives there.
-class FineTiles final : public api::FinerMap {
+class FineTiles final : public api::FineMap {
  public:
   static constexpr std::size_t kMostDrawn = std::size_t{4} << 20;  // bytes of tiles
   static constexpr std::size_t kMostAskers = 256;
@@ -35,27 +35,28 @@ class FineTiles final : public api::FinerMap {
   }
   void clear();
 
-  std::optional<picture::Finer> finer(const picture::Layer& layer, std::uint64_t since) const override {
-    return grids_.finer(layer, since);
+  std::optional<picture::FinerLevels> finer_levels(const picture::Layer& layer,
+                                                   std::uint64_t since) const override {
+    return grids_.finer_levels(layer, since);
   }
   void tile(const picture::Layer& layer, const picture::TileIndex& at, Done done) override;
   std::size_t bytes() const { return grids_.bytes() + drawn_bytes_; }
 
  private:
   /// A block, by the coarser tile that it replaces.
-  struct Place {
+  struct BlockKey {
     picture::Layer layer;
     picture::TileIndex over;
-    friend auto operator<=>(const Place&, const Place&) = default;
+    friend auto operator<=>(const BlockKey&, const BlockKey&) = default;
   };
   /// The source of a block.
-  struct Of {
+  struct BlockSource {
     std::uint64_t newest = 0;
     picture::Tile base;
-    friend bool operator==(const Of&, const Of&) = default;
+    friend bool operator==(const BlockSource&, const BlockSource&) = default;
   };
-  struct Drawn {
-    Of of;
+  struct CachedBlock {
+    BlockSource of;
     picture::FineBlock tiles;
     std::size_t bytes = 0;
     std::uint64_t used = 0;  // order of use
@@ -66,21 +67,21 @@ class FineTiles final : public api::FinerMap {
   };
   struct Job;
 
-  Of areas_at(const Place& place) const;
-  const picture::FineBlock* find_block(const Place& place, const Of& of);
+  BlockSource areas_at(const BlockKey& place) const;
+  const picture::FineBlock* find_block(const BlockKey& place, const BlockSource& of);
   void pump();
-  void draw(const Place& place, Of of, std::vector<Asker> askers);
+  void draw(const BlockKey& place, BlockSource of, std::vector<Asker> askers);
   void on_drawn(const Job& job);
-  void keep(const Place& place, const Of& of, const picture::FineBlock& tiles);
+  void keep(const BlockKey& place, const BlockSource& of, const picture::FineBlock& tiles);
 
   loop::Workers& workers_;
   const picture::Mosaic& mosaic_;
   picture::ForwardedGrids grids_;
-  std::map<Place, Drawn> drawn_;
+  std::map<BlockKey, CachedBlock> drawn_;
   std::size_t drawn_bytes_ = 0;
   std::uint64_t uses_ = 0;
-  std::map<Place, std::vector<Asker>> askers_;
-  std::deque<Place> waiting_;  // each has askers
+  std::map<BlockKey, std::vector<Asker>> askers_;
+  std::deque<BlockKey> waiting_;  // each has askers
   bool is_drawing_ = false;
 };
 
@@ -119,21 +120,21 @@ class MapPicture {
 
   /// Draws an accepted map, unless a later one covers it.
   void on_forwarded(icd::MapUpdate map);
-  /// Draws no map until go_on_from(), at most for kMostHeld.
+  /// Draws no map until restore(), at most for kMostHeld.
   void hold() { held_until_ = loop_.now() + kMostHeld; }
-  void go_on_from(picture::Mosaic earlier);
+  void restore(picture::Mosaic earlier);
   /// Forgets the picture and its queue.
   void begin_run();
   /// The time of day was set ahead by `seconds`.
   void move(double seconds);
 
   const picture::Mosaic& mosaic() const { return mosaic_; }
-  api::FinerMap& finer() { return fine_; }
+  api::FineMap& fine_map() { return fine_; }
   api::CoveredMap& covered_map() { return covered_; }
   std::size_t finer_bytes() const { return fine_.bytes(); }
 
  private:
-  struct Waiting {
+  struct QueuedDrawing {
     icd::MapUpdate map;
     double stamp = 0;  // forwarded at this time of day
     /// For a grid: the bounds of it and of all that it replaced here.
@@ -142,7 +143,7 @@ class MapPicture {
   struct Job;
 
   void pump();
-  void draw(Waiting waiting);
+  void draw(QueuedDrawing waiting);
   void on_drawn(Job& job);
 
   loop::Loop& loop_;
@@ -152,7 +153,7 @@ class MapPicture {
   picture::Mosaic mosaic_;
   FineTiles fine_;
   CoveredCount covered_;
-  std::deque<Waiting> waiting_;  // oldest first
+  std::deque<QueuedDrawing> waiting_;  // oldest first
   std::size_t waiting_bytes_ = 0;
   std::optional<double> drawing_;  // time of the map that is being drawn
   loop::Instant held_until_{};

@@ -37,7 +37,7 @@ void SpooledMapArrival::store(icd::ChunkedBytes bytes, std::function<void(icd::C
 icd::Checked<icd::ChunkedBytes> SpooledMapArrival::stored_bytes() {
   if (!stored_->file || stored_->file->stored_bytes() == 0) return {};
   icd::ChunkedBytes data = stored_->file->mapped_bytes();
-  if (data.empty()) return std::unexpected(not_stored());
+  if (data.empty()) return std::unexpected(storage_refusal());
   return data;
 }
 
@@ -57,7 +57,7 @@ icd::Checked<icd::MapUpdate> strip_data(icd::MapUpdate map, std::shared_ptr<spoo
 
 }  // namespace
 
-icd::Refusal not_stored() {
+icd::Refusal storage_refusal() {
   return {icd::Status::ServiceUnavailable, "Adit cannot store this map; send it again later"};
 }
 
@@ -67,41 +67,41 @@ MapStore::MapStore(loop::Writer& writer, spool::Spool& spool)
       spool_(spool),
       trouble_(spool.trouble()) {}
 
-std::shared_ptr<intake::MapArrival> MapStore::arrives(std::function<std::uint64_t()> spare,
-                                                      SpooledMapArrival::Accept take) {
+std::shared_ptr<intake::MapArrival> MapStore::begin_map(std::function<std::uint64_t()> spare,
+                                                        SpooledMapArrival::Accept take) {
   return std::make_shared<SpooledMapArrival>(while_alive_, spool_, std::move(spare), std::move(take));
 }
 
 void MapStore::store(icd::MapUpdate update, std::shared_ptr<spool::MapFile> file, std::uint64_t spare,
-                     bool again, std::function<void(Stored& stored)> done,
+                     bool again, std::function<void(StoredMap& stored)> done,
                      std::optional<icd::GridBounds> bounds) {
   /// The writer's until it is stored.
   struct Job {
     icd::MapUpdate update;
     std::shared_ptr<spool::MapFile> file;
     std::optional<icd::GridBounds> bounds;
-    Stored stored;
+    StoredMap stored;
   };
   const std::size_t size = update.data.bytes.size();
   const auto job = std::make_shared<Job>(Job{std::move(update), std::move(file), bounds, {}});
   // Lower numbers for older maps: later processes follow them.
   job->stored.number = again && again_numbers_ < kFirstNumber - 1 ? ++again_numbers_ : ++numbers_;
-  job->stored.map = std::unexpected(not_stored());
+  job->stored.map = std::unexpected(storage_refusal());
   writer_.submit(
       [&spool = spool_, job, spare, again] {
-        Stored& stored = job->stored;
+        StoredMap& stored = job->stored;
         stored.has_no_valid_point = !again && pack::has_only_invalid_points(job->update);
         stored.map = stored.has_no_valid_point
                          ? strip_data(std::move(job->update), std::move(job->file))
                          : spool.keep(stored.number, std::move(job->update), spare, std::move(job->file));
         if (!stored.map || !job->bounds || spool.keep_bounds(stored.number, *job->bounds)) return;
         spool.forget(stored.number);
-        stored.map = std::unexpected(not_stored());
+        stored.map = std::unexpected(storage_refusal());
       },
       [this, job, size, again, done = std::move(done)] {
         --count_;
         bytes_ -= size;
-        Stored& stored = job->stored;
+        StoredMap& stored = job->stored;
         if (!again && !stored.has_no_valid_point) {
           const std::string before = std::exchange(trouble_, stored.map ? "" : stored.map.error().sentence);
           if (!stored.map && before.empty())
@@ -118,10 +118,10 @@ void MapStore::discard(std::shared_ptr<spool::MapFile> file) {
 }
 
 void MapStore::forget(std::span<const std::uint64_t> numbers) {
-  forget(queues::Replaced{.numbers = {numbers.begin(), numbers.end()}});
+  forget(queues::ReplacedMaps{.numbers = {numbers.begin(), numbers.end()}});
 }
 
-void MapStore::forget(queues::Replaced replaced) {
+void MapStore::forget(queues::ReplacedMaps replaced) {
   if (replaced.numbers.empty() && !replaced.bounds) return;
   spool_.forget_ends(replaced.numbers);
   writer_.submit(
@@ -133,11 +133,11 @@ void MapStore::forget(queues::Replaced replaced) {
       [] {});
 }
 
-void MapStore::set_aside(std::vector<Damaged> damaged) {
-  for (const Damaged& each : damaged) unchecked_.erase(each.number);
+void MapStore::set_aside(std::vector<DamagedMap> damaged) {
+  for (const DamagedMap& each : damaged) unchecked_.erase(each.number);
   writer_.submit(
       [&spool = spool_, damaged = std::move(damaged)] {
-        for (const Damaged& each : damaged) spool.set_aside(each.number, each.why);
+        for (const DamagedMap& each : damaged) spool.set_aside(each.number, each.why);
       },
       [] {});
 }
@@ -150,16 +150,16 @@ bool MapStore::adopt(std::uint64_t number) {
   return again;
 }
 
-std::vector<std::uint64_t> MapStore::work_begins(const queues::QueuedMap& waiting) {
+std::vector<std::uint64_t> MapStore::begin_work(const queues::QueuedMap& waiting) {
   std::vector<std::uint64_t> numbers;
   queues::add_own_numbers(numbers, waiting);
-  spool_.work_begins(numbers);
+  spool_.begin_work(numbers);
   std::erase_if(numbers, [this](std::uint64_t number) { return !unchecked_.contains(number); });
   return numbers;
 }
 
-void MapStore::work_ends(bool are_packed, std::span<const std::uint64_t> checked) {
-  spool_.work_ends(are_packed);
+void MapStore::end_work(bool are_packed, std::span<const std::uint64_t> checked) {
+  spool_.end_work(are_packed);
   if (!are_packed) return;
   for (const std::uint64_t number : checked) unchecked_.erase(number);
 }

@@ -39,7 +39,7 @@ class SpooledMapArrival final : public intake::MapArrival {
 
  private:
   /// The writer's while it works on it.
-  struct Stored {
+  struct WriterFile {
     std::shared_ptr<spool::MapFile> file;  // null: none
   };
 
@@ -47,7 +47,7 @@ class SpooledMapArrival final : public intake::MapArrival {
   spool::Spool& spool_;
   std::function<std::uint64_t()> spare_;
   Accept take_;
-  std::shared_ptr<Stored> stored_ = std::make_shared<Stored>();
+  std::shared_ptr<WriterFile> stored_ = std::make_shared<WriterFile>();
 };
 
 /// Maps in the spool: the writer stores a map before Adit accepts it, and deletes it once it is delivered,
@@ -57,13 +57,13 @@ class MapStore {
   /// Maps with lower numbers are sent again by the operator. They are older than all others.
   static constexpr std::uint64_t kFirstNumber = 1u << 20;
 
-  struct Stored {
+  struct StoredMap {
     std::uint64_t number = 0;
     bool has_no_valid_point = false;   // `map` has no data and no file
     icd::Checked<icd::MapUpdate> map;  // with its data in the file; or why it could not be stored
   };
   /// A map with damaged data.
-  struct Damaged {
+  struct DamagedMap {
     std::uint64_t number = 0;
     std::string why;
   };
@@ -72,20 +72,20 @@ class MapStore {
   MapStore(loop::Writer& writer, spool::Spool& spool);
 
   /// `spare`: bytes to leave free. The arrival may outlive this.
-  std::shared_ptr<intake::MapArrival> arrives(std::function<std::uint64_t()> spare,
-                                              SpooledMapArrival::Accept take);
+  std::shared_ptr<intake::MapArrival> begin_map(std::function<std::uint64_t()> spare,
+                                                SpooledMapArrival::Accept take);
   /// Stores `update` and leaves `spare` bytes free. `file`: with its data, or null. `again`: the operator
   /// sends it again, with these bounds (QueuedMap::bounds).
   void store(icd::MapUpdate update, std::shared_ptr<spool::MapFile> file, std::uint64_t spare, bool again,
-             std::function<void(Stored& stored)> done, std::optional<icd::GridBounds> bounds = {});
+             std::function<void(StoredMap& stored)> done, std::optional<icd::GridBounds> bounds = {});
   /// Closes the file of a map that is not accepted; null: none.
   void discard(std::shared_ptr<spool::MapFile> file);
   void forget(std::span<const std::uint64_t> numbers);
   /// Deletes maps that a newer one replaced, once its bounds are stored. If they cannot be stored, the files
   /// stay until the newer map is delivered.
-  void forget(queues::Replaced replaced);
+  void forget(queues::ReplacedMaps replaced);
   /// Renames the damaged files.
-  void set_aside(std::vector<Damaged> damaged);
+  void set_aside(std::vector<DamagedMap> damaged);
 
   /// An earlier process stored map `number`: its data is unchecked. True: the operator sends it again.
   bool adopt(std::uint64_t number);
@@ -94,13 +94,13 @@ class MapStore {
   /// The number of the next map that the operator sends again.
   std::uint64_t next_resend_number() const { return again_numbers_ + 1; }
   /// A worker begins to pack `waiting`. Returns its unchecked maps.
-  std::vector<std::uint64_t> work_begins(const queues::QueuedMap& waiting);
+  std::vector<std::uint64_t> begin_work(const queues::QueuedMap& waiting);
   /// `are_packed`: the maps are packed, and the data of `checked` is good.
-  void work_ends(bool are_packed, std::span<const std::uint64_t> checked);
-  void work_overruns() { spool_.work_overruns(); }
+  void end_work(bool are_packed, std::span<const std::uint64_t> checked);
+  void record_overrun() { spool_.record_overrun(); }
   std::string work_file() const { return spool_.work_file(); }
   /// Faults ended aditd while it packed this map under another number.
-  void remember(std::uint64_t number, const spool::Spool::Ends& ends) { spool_.remember(number, ends); }
+  void remember(std::uint64_t number, const spool::Spool::EndCounts& ends) { spool_.remember(number, ends); }
 
   /// Maps that are being stored, and their bytes.
   std::size_t count() const { return count_; }
@@ -120,6 +120,6 @@ class MapStore {
 };
 
 /// For maps that cannot be stored.
-icd::Refusal not_stored();
+icd::Refusal storage_refusal();
 
 }  // namespace adit::forward

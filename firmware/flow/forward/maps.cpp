@@ -22,9 +22,9 @@ using queues::MapEvent;
 using queues::MapState;
 
 /// A map after whose packing processes ended. Alone, because a fault counts against all maps in one message.
-queues::PackingRule rule_after(const spool::Spool::Ends& ends) {
+queues::PackingRule rule_after(const spool::Spool::EndCounts& ends) {
   using enum queues::PackingRule;
-  constexpr int kMost = spool::Spool::Ends::kMost;
+  constexpr int kMost = spool::Spool::EndCounts::kMost;
   if (ends.others > kMost) return LastAsItIs;
   if (ends.others == kMost || ends.faults >= kMost) return Last;
   return ends.faults > 0 ? Alone : Any;
@@ -52,9 +52,9 @@ void crop(icd::OccupancyGrid& grid, const pack::Tile& tile) {
 }
 
 /// The damaged maps among the `unread` ones in `waiting`.
-std::vector<MapStore::Damaged> damaged_in(const queues::QueuedMap& waiting,
-                                          const std::vector<std::uint64_t>& unread) {
-  std::vector<MapStore::Damaged> damaged;
+std::vector<MapStore::DamagedMap> damaged_in(const queues::QueuedMap& waiting,
+                                             const std::vector<std::uint64_t>& unread) {
+  std::vector<MapStore::DamagedMap> damaged;
   const auto look_at = [&](const queues::QueuedMap& one) {
     if (std::ranges::find(unread, one.updates.back()) == unread.end()) return;
     if (auto checked = codec::check_data(one.map); !checked)
@@ -122,7 +122,7 @@ Maps::Maps(loop::Loop& loop, uplink::Servers& servers, loop::Workers& workers, l
       queue_(settings.queues.merge_bytes),
       store_(writer, spool),
       slot_(pace::map_bytes_per_second(settings.command_post.budget_mbit)),
-      packing_(loop, [this] { store_.work_overruns(); }) {
+      packing_(loop, [this] { store_.record_overrun(); }) {
   apply_settings();
   queue_.canvases().lead_to(channel_.address());
 }
@@ -141,7 +141,7 @@ void Maps::on_settings_changed() {
   pump();
 }
 
-void Maps::endpoint_changed(std::optional<icd::BearerToken> token) {
+void Maps::on_endpoint_changed(std::optional<icd::BearerToken> token) {
   const settings::CommandPost& post = settings_.command_post;
   channel_.lead_to(access_to_mapping(post, std::move(token), pace::map_bytes_per_second(post.budget_mbit)));
   channel_.give_up();
@@ -149,17 +149,17 @@ void Maps::endpoint_changed(std::optional<icd::BearerToken> token) {
 }
 
 /// After a power cut the areas of earlier grids are unknown. The record that begins grids shows it.
-void Maps::carry_on(const journal::Carried& carried, bool ran_before) {
-  queues::Canvases::Posted posted = carried.grids().value_or(queues::Canvases::Posted{});
+void Maps::restore(const journal::HandoverState& carried, bool ran_before) {
+  queues::Canvases::PostedAreas posted = carried.grids().value_or(queues::Canvases::PostedAreas{});
   if (!carried.grids()) {
-    const auto everywhere = queues::Extent::everywhere();
+    const auto everywhere = queues::Extent::infinite();
     const auto told =
         ran_before ? journal_.record_grid(queues::Canvases::kAnyName, everywhere) : journal_.begin_grids();
     if (ran_before || !told) posted[queues::Canvases::kAnyName] = everywhere;
     are_grids_told_ = told.has_value();
   }
-  queue_.canvases().carry_on(std::move(posted));
-  pace_.carry_on(carried, loop_.now());
+  queue_.canvases().restore(std::move(posted));
+  pace_.restore(carried, loop_.now());
   for (const auto& [robot, heard] : carried.heard_by_robot()) {
     for (const TrafficKind kind : {TrafficKind::Grid, TrafficKind::Cloud})
       behind_[{kind, robot}] = heard.behind.at(static_cast<std::size_t>(kind));
@@ -168,10 +168,10 @@ void Maps::carry_on(const journal::Carried& carried, bool ran_before) {
 
 /// Journals posted areas, so that later processes know the cells that were never sent. False: not journaled,
 /// do not accept the grid. If the start could not read the journal, it is left for the next process.
-bool Maps::is_told(const icd::MapUpdate& update) {
+bool Maps::record_area(const icd::MapUpdate& update) {
   if (!update.is_grid()) return true;
   if (!are_grids_told_) {
-    const auto everywhere = queues::Extent::everywhere();
+    const auto everywhere = queues::Extent::infinite();
     are_grids_told_ = journal_.record_grid(queues::Canvases::kAnyName, everywhere).has_value();
     if (!are_grids_told_) return false;
   }
@@ -186,11 +186,12 @@ bool Maps::is_told(const icd::MapUpdate& update) {
 bool Maps::has_room_for(const icd::MapUpdate& update, bool replaces) const {
   const std::size_t waiting = queue_.bytes() + store_.bytes();
   const std::size_t count = queue_.count() + store_.count();
-  if (!replaces && count >= kMostMaps && (count >= kMostWithJoined || !queue_.joins(update))) return false;
+  if (!replaces && count >= kMostMaps && (count >= kMostWithJoined || !queue_.can_join_last(update)))
+    return false;
   return replaces || waiting == 0 || waiting + update.data.bytes.size() <= settings_.queues.map_bytes;
 }
 
-void Maps::accept(const std::shared_ptr<Arrived>& map) {
+void Maps::accept(const std::shared_ptr<ReceivedMap>& map) {
   if (overtaken_.must_wait(map->upload)) return waiting_.push_back(map);
   icd::MapUpdate& update = map->update;
   const bool is_whole = queue_.clouds_of(queues::Sender::from_map(update)) == queues::Clouds::Whole;
@@ -204,19 +205,19 @@ void Maps::accept(const std::shared_ptr<Arrived>& map) {
                                        icd::size_text(queue_.bytes() + store_.bytes()),
                                        "; this map was not accepted, send it again later")});
   }
-  if (!is_told(update)) return refuse(*map, not_stored());
+  if (!record_area(update)) return refuse(*map, storage_refusal());
   overtaken_.begin(map->upload, !newer.empty());
-  if (!newer.empty()) return leave_out(map, newer);
+  if (!newer.empty()) return store_uncovered(map, newer);
   // Newer grids and whole clouds need room beside the old one.
   const std::uint64_t of_its_own = update.is_grid() || is_whole ? update.data.bytes.size() : 0;
   const std::uint64_t spare =
       replaces ? 0 : std::max<std::uint64_t>(queue_.largest_replaceable(), of_its_own);
   store_.store(std::move(update), std::move(map->file), spare, /*again=*/false,
-               [this, map](MapStore::Stored& stored) { this->on_stored(stored, *map); });
+               [this, map](MapStore::StoredMap& stored) { this->on_stored(stored, *map); });
 }
 
 /// Queued now; the sender may know.
-void Maps::on_stored(MapStore::Stored& stored, Arrived& map) {
+void Maps::on_stored(MapStore::StoredMap& stored, ReceivedMap& map) {
   if (stored.has_no_valid_point) {
     counts_.no_valid_point(traffic_of(*stored.map), map.upload.bytes, loop_.wall_now());
     store_.forget({&stored.number, 1});
@@ -230,22 +231,22 @@ void Maps::on_stored(MapStore::Stored& stored, Arrived& map) {
   accept(map);
 }
 
-void Maps::queue(MapStore::Stored& stored) {
+void Maps::queue(MapStore::StoredMap& stored) {
   const Traffic traffic = traffic_of(*stored.map);
-  tell_clouds(*stored.map);
+  set_cloud_kind(*stored.map);
   const auto replaced = queue_.add(stored.number, std::move(*stored.map), loop_.now());
   counts_.count_replaced(traffic, replaced.numbers.size());
   store_.forget(replaced);
 }
 
-void Maps::leave_out(const std::shared_ptr<Arrived>& map, std::span<const icd::GridBounds> newer) {
+void Maps::store_uncovered(const std::shared_ptr<ReceivedMap>& map, std::span<const icd::GridBounds> newer) {
   const auto* const grid = std::get_if<icd::OccupancyGrid>(&map->update.msg);
   if (grid != nullptr) map->tiles = tiles_outside(*grid, newer);
   if (map->tiles.empty()) {  // the Command Post has newer data, or will have it
     counts_.count_replaced(traffic_of(map->update), 1);
     return accept(*map);
   }
-  map->cut = std::unexpected(not_stored());
+  map->cut = std::unexpected(storage_refusal());
   workers_.submit(
       loop::Urgency::OnTheWay,
       [map, width = grid->width] { map->cut = pack::cut(map->update.data, width, map->tiles); },
@@ -256,43 +257,45 @@ void Maps::leave_out(const std::shared_ptr<Arrived>& map, std::span<const icd::G
       });
 }
 
-void Maps::store_next_tile(const std::shared_ptr<Arrived>& map) {
+void Maps::store_next_tile(const std::shared_ptr<ReceivedMap>& map) {
   icd::MapUpdate part = map->update;
   crop(std::get<icd::OccupancyGrid>(part.msg), map->tiles.back());
   part.data = std::move(map->tiles.back().data);
   map->tiles.pop_back();
-  store_.store(std::move(part), nullptr, /*spare=*/0, /*again=*/false, [this, map](MapStore::Stored& stored) {
-    if (!stored.map) {
-      for (const MapStore::Stored& part : map->parts) store_.forget({&part.number, 1});
-      return refuse(*map, std::move(stored.map.error()));
-    }
-    map->parts.push_back(std::move(stored));
-    if (!map->tiles.empty()) return store_next_tile(map);
-    for (MapStore::Stored& part : map->parts) {
-      overtaken_.record(*part.map, map->upload);
-      queue(part);
-    }
-    accept(*map);
-  });
+  store_.store(std::move(part), nullptr, /*spare=*/0, /*again=*/false,
+               [this, map](MapStore::StoredMap& stored) {
+                 if (!stored.map) {
+                   for (const MapStore::StoredMap& part : map->parts) store_.forget({&part.number, 1});
+                   return refuse(*map, std::move(stored.map.error()));
+                 }
+                 map->parts.push_back(std::move(stored));
+                 if (!map->tiles.empty()) return store_next_tile(map);
+                 for (MapStore::StoredMap& part : map->parts) {
+                   overtaken_.record(*part.map, map->upload);
+                   queue(part);
+                 }
+                 accept(*map);
+               });
 }
 
-void Maps::accept(Arrived& map) {
+void Maps::accept(ReceivedMap& map) {
   counts_.count_accepted(traffic_of(map.update), map.upload.bytes, loop_.wall_now());
   end(map, {});
   compare();
   pump();
 }
 
-void Maps::end(Arrived& map, const icd::Checked<void>& outcome) {
+void Maps::end(ReceivedMap& map, const icd::Checked<void>& outcome) {
   store_.discard(std::exchange(map.file, nullptr));
   overtaken_.end(map.upload);
   map.done(outcome);
   for (const auto& each : std::exchange(waiting_, {})) accept(each);
 }
 
-void Maps::restore(spool::Spool::Kept kept) {
-  const auto at_fault = std::ranges::stable_partition(
-      kept, [](const spool::Spool::KeptMap& each) { return each.ends.faults < spool::Spool::Ends::kMost; });
+void Maps::restore(spool::Spool::KeptMaps kept) {
+  const auto at_fault = std::ranges::stable_partition(kept, [](const spool::Spool::KeptMap& each) {
+    return each.ends.faults < spool::Spool::EndCounts::kMost;
+  });
   for (spool::Spool::KeptMap& each : at_fault) put_aside(std::move(each));
   kept.erase(at_fault.begin(), at_fault.end());
   store_.read_trouble();
@@ -308,9 +311,9 @@ void Maps::put_aside(spool::Spool::KeptMap kept) {
   const std::string why =
       icd::sentence("the service ended ", kept.ends.faults, " times by a fault while it packed this map");
   counts_.count_accepted(traffic, bytes, time_of(loop_, kept.map.header().stamp.value_or(loop_.stamp_now())));
-  counts_.not_taken(traffic, DeliveryFailure::Failed, 0, why);
+  counts_.count_undelivered(traffic, DeliveryFailure::Failed, 0, why);
   rejected_.add(std::move(kept.map), 0, why, bytes,
-                {.let_go = [this, number = kept.number] { store_.forget({&number, 1}); }}, kept.bounds,
+                {.release = [this, number = kept.number] { store_.forget({&number, 1}); }}, kept.bounds,
                 kept.ends.faults);
 }
 
@@ -323,7 +326,7 @@ void Maps::restore(spool::Spool::KeptMap kept) {
   if (again) {
     store_.forget(queue_.put_back(requeued_map(number, std::move(update), kept.bounds, kept.ends)));
   } else {
-    tell_clouds(update);
+    set_cloud_kind(update);
     // The sender's first map may stand for older ones, which it replaced.
     const auto behind = behind_.extract(traffic_of(update));
     const icd::Stamp since = behind ? std::fmin(stamp, behind.mapped()) : stamp;
@@ -333,7 +336,7 @@ void Maps::restore(spool::Spool::KeptMap kept) {
   pump();
 }
 
-void Maps::tell_clouds(const icd::MapUpdate& update) {
+void Maps::set_cloud_kind(const icd::MapUpdate& update) {
   const queues::Clouds clouds = queue_.clouds_of(queues::Sender::from_map(update));
   if (clouds != queues::Clouds::Auto) counts_.set_cloud_kind(traffic_of(update), clouds);
 }
@@ -353,14 +356,14 @@ void Maps::resend(icd::MapUpdate update, std::function<bool(bool kept)> done,
   back.map.data = {};  // so that the writer frees it chunk by chunk
   store_.store(
       std::move(update), nullptr, 0, /*again=*/true,
-      [this, back = std::move(back), faults, done = std::move(done)](MapStore::Stored& stored) {
+      [this, back = std::move(back), faults, done = std::move(done)](MapStore::StoredMap& stored) {
         if (stored.map && faults > 0) store_.remember(stored.number, {.faults = faults});
         finish_storing(stored, back, done);
       },
       bounds);
 }
 
-void Maps::finish_storing(MapStore::Stored& stored, queues::QueuedMap back,
+void Maps::finish_storing(MapStore::StoredMap& stored, queues::QueuedMap back,
                           const std::function<bool(bool kept)>& done) {
   const bool is_wanted = done(stored.map.has_value());
   if (!stored.map) {
@@ -382,7 +385,7 @@ void Maps::finish_storing(MapStore::Stored& stored, queues::QueuedMap back,
 
 queues::QueuedMap Maps::requeued_map(std::uint64_t number, icd::MapUpdate update,
                                      const std::optional<icd::GridBounds>& bounds,
-                                     const spool::Spool::Ends& ends) const {
+                                     const spool::Spool::EndCounts& ends) const {
   const icd::Stamp stamp = update.header().stamp.value_or(0);
   return {.map = std::move(update),
           .accepted = loop_.now(),
@@ -395,10 +398,10 @@ queues::QueuedMap Maps::requeued_map(std::uint64_t number, icd::MapUpdate update
 /// One pair at a time, to save memory. Both stay queued and may be sent.
 void Maps::compare() {
   if (is_comparing_ || stopping_) return;
-  auto next = queue_.to_compare();
+  auto next = queue_.uncompared_clouds();
   if (!next) return;
   struct Comparison {
-    queues::Successive two;
+    queues::CloudPair two;
     bool has_all = false;
   };
   const auto it = std::make_shared<Comparison>(Comparison{*std::move(next)});
@@ -409,7 +412,7 @@ void Maps::compare() {
   is_comparing_ = true;
 }
 
-void Maps::on_compared(const queues::Successive& two, bool has_all) {
+void Maps::on_compared(const queues::CloudPair& two, bool has_all) {
   is_comparing_ = false;
   const Traffic traffic{TrafficKind::Cloud, icd::text_of(two.sender.name)};
   if (has_all) {
@@ -423,16 +426,16 @@ void Maps::on_compared(const queues::Successive& two, bool has_all) {
   compare();
 }
 
-std::vector<const Maps::Prepared*> Maps::prepared_of(const Traffic& traffic) const {
-  std::vector<const Prepared*> all;
-  for (const Prepared* each : {first_.get(), following_.get()}) {
+std::vector<const Maps::PreparedMap*> Maps::prepared_of(const Traffic& traffic) const {
+  std::vector<const PreparedMap*> all;
+  for (const PreparedMap* each : {first_.get(), following_.get()}) {
     if (each != nullptr && traffic_of(each->waiting.map) == traffic) all.push_back(each);
   }
   return all;
 }
 
 /// A worker that packs the map reads no bounds.
-std::optional<queues::Replaced> Maps::absorb(const queues::QueuedMap& back) {
+std::optional<queues::ReplacedMaps> Maps::absorb(const queues::QueuedMap& back) {
   for (const Place& place : {first_, following_}) {
     if (!place) continue;
     if (auto replaced = queues::absorb(place->waiting, back)) return replaced;
@@ -441,12 +444,12 @@ std::optional<queues::Replaced> Maps::absorb(const queues::QueuedMap& back) {
 }
 
 void Maps::prepare(bool follows) {
-  slot_.link_delivers(channel_.delivers());
-  queue_.a_message_holds(slot_.points_for(pace_.spacing()));
+  slot_.set_link_rate(channel_.delivers());
+  queue_.set_message_points(slot_.points_for(pace_.spacing()));
   auto waiting = queue_.pop(loop_.now());
   if (!waiting) return;
   Place& place = follows ? following_ : first_;
-  place = std::make_shared<Prepared>(Prepared{.waiting = std::move(*waiting)});
+  place = std::make_shared<PreparedMap>(PreparedMap{.waiting = std::move(*waiting)});
   pack(place);
 }
 
@@ -456,8 +459,8 @@ void Maps::pack(const Place& prepared) {
   header.stamp = pace_.next_stamp(header.stamp.value_or(loop_.stamp_now()));
   pace_.keep_stamp(*header.stamp);
   const loop::Instant began = loop_.now();
-  const Packing packing{settings_.command_post.arrange_clouds, slot_.hurry(pace_.spacing())};
-  const auto unread = store_.work_begins(prepared->waiting);
+  const Packing packing{settings_.command_post.arrange_clouds, slot_.effort_input(pace_.spacing())};
+  const auto unread = store_.begin_work(prepared->waiting);
   workers_.submit(
       loop::Urgency::OnTheWay,
       [prepared, packing, unread, &loop = loop_, starts = packing_.begin(), file = store_.work_file()] {
@@ -477,19 +480,19 @@ void Maps::pack(const Place& prepared) {
         is_packing_ = false;
         packing_.end();
         const bool is_good = prepared->damaged.empty();
-        store_.work_ends(is_good, unread);
-        if (is_good) slot_.packing_took(loop_.now() - began);
-        work_done(prepared);
+        store_.end_work(is_good, unread);
+        if (is_good) slot_.on_packing_done(loop_.now() - began);
+        on_work_done(prepared);
         pump();
       },
-      [this, prepared] { work_failed(prepared); });
+      [this, prepared] { on_work_failed(prepared); });
   is_packing_ = true;
 }
 
-void Maps::work_done(const Place& prepared) {
+void Maps::on_work_done(const Place& prepared) {
   if (prepared->damaged.empty()) {
-    const Packed& packed = prepared->packed;
-    slot_.worker_took(prepared->packing_took, packed.expected);
+    const PackedMap& packed = prepared->packed;
+    slot_.on_work_done(prepared->packing_took, packed.expected);
     slot_.on_packed(packed.points_size, packed.full_size, packed.precision);
   }
   if (prepared->state != MapState::Packing) return;  // recalled
@@ -510,14 +513,14 @@ void Maps::work_done(const Place& prepared) {
   step(prepared, MapEvent::Packed);
 }
 
-void Maps::work_failed(const Place& prepared) {
+void Maps::on_work_failed(const Place& prepared) {
   is_packing_ = false;
   packing_.end();
-  store_.work_ends(false, {});
+  store_.end_work(false, {});
   prepared->packed = {};
   if (prepared->state == MapState::Packing) {
-    counts_.not_taken(traffic_of(prepared->waiting.map), DeliveryFailure::Failed, 0,
-                      "it could not be compressed");
+    counts_.count_undelivered(traffic_of(prepared->waiting.map), DeliveryFailure::Failed, 0,
+                              "it could not be compressed");
     step(prepared, MapEvent::NotPacked);
   }
   pace_.on_failed(loop_.now());
@@ -559,7 +562,7 @@ void Maps::recall(const Place& map) {
 }
 
 /// A single cloud or grid goes on in pieces within the limit.
-void Maps::put_back_smaller(Prepared& map) {
+void Maps::put_back_smaller(PreparedMap& map) {
   if (!map.waiting.parts.empty()) return queue_.put_back_halves(map.waiting);
   const std::size_t size = map.packed.body.size();
   std::size_t pieces = 2;
@@ -569,19 +572,19 @@ void Maps::put_back_smaller(Prepared& map) {
 }
 
 /// Records the damaged maps as failed and renames their files. The other parts are queued again, each alone.
-void Maps::set_aside(const Prepared& map) {
+void Maps::set_aside(const PreparedMap& map) {
   queues::QueuedMap rest = map.waiting;
   std::vector<std::uint64_t> gone;
   gone.reserve(map.damaged.size());
-  for (const MapStore::Damaged& each : map.damaged) gone.push_back(each.number);
+  for (const MapStore::DamagedMap& each : map.damaged) gone.push_back(each.number);
   const auto is_gone = [&](std::uint64_t number) { return std::ranges::find(gone, number) != gone.end(); };
   std::erase_if(rest.parts, [&](const queues::QueuedMap& part) { return is_gone(part.updates.back()); });
   std::erase_if(rest.updates, is_gone);
   store_.set_aside(map.damaged);
   if (!rest.parts.empty()) queue_.put_back_single(std::move(rest));
-  for (const MapStore::Damaged& each : map.damaged) {
-    counts_.not_taken(traffic_of(map.waiting.map), DeliveryFailure::Failed, 0,
-                      "its stored copy is damaged: " + each.why);
+  for (const MapStore::DamagedMap& each : map.damaged) {
+    counts_.count_undelivered(traffic_of(map.waiting.map), DeliveryFailure::Failed, 0,
+                              "its stored copy is damaged: " + each.why);
   }
   store_.forget(gone);
 }
@@ -597,7 +600,7 @@ void Maps::repack() {
 
 void Maps::pump() noexcept {
   if (!stopping_ && channel_.turns()) {
-    pace_.link_is_back();
+    pace_.on_link_up();
     blame_ = {};
     ahead_ = {};
     slot_.forget_sizes();
@@ -605,17 +608,17 @@ void Maps::pump() noexcept {
     repack();
   }
   if (stopping_ || is_packing_ || !channel_.has_token()) return;
-  go_on();
+  advance();
 }
 
-void Maps::go_on() {
+void Maps::advance() {
   const loop::Instant now = loop_.now();
   const bool follows = channel_.busy();
   const Place& next = follows ? following_ : first_;
   if (next && next->state == MapState::InFlight) return;
   if (next && must_split(*next)) {
     step(next, MapEvent::TooLarge);
-    return go_on();
+    return advance();
   }
   if (next && follows) return pipeline_map(now);
   if (next) {
@@ -651,13 +654,13 @@ loop::Instant Maps::packing_time(loop::Instant now) const {
 
 /// Once the one that is under way has arrived; it is looked for when the next may start, and not before.
 void Maps::pipeline_map(loop::Instant now) {
-  if (!may_go_ahead(now)) return;
-  Prepared& first = *first_;
+  if (!can_pipeline(now)) return;
+  PreparedMap& first = *first_;
   const std::size_t size = first.packed.body.size(), left = size - std::min(size, channel_.sent_bytes());
   if (!first.arrived && left > 0)
     return wake_.call_at(now + std::max<loop::Duration>(slot_.transfer(left) / 2, kLookAtSending));
   if (now < start_time() - kGetReady) return wake_.call_at(start_time() - kGetReady);
-  channel_.get_ready();
+  channel_.preconnect();
   const auto arrived = first.arrived ? std::nullopt : channel_.has_arrived();
   if (arrived) {
     first.arrived = arrived->last;
@@ -670,12 +673,12 @@ void Maps::pipeline_map(loop::Instant now) {
 }
 
 /// If not, the answer to the one that is under way is awaited.
-bool Maps::may_go_ahead(loop::Instant now) const {
-  const Prepared& first = *first_;
-  const queues::Pipelining::Before before{
+bool Maps::can_pipeline(loop::Instant now) const {
+  const PreparedMap& first = *first_;
+  const queues::Pipelining::PreviousMap before{
       .map = first.waiting, .arrived = first.arrived.value_or(now), .went_ahead = first.went_ahead};
-  return first.state == MapState::InFlight && !channel_.is_serial() && pace_.may_go_ahead(now) &&
-         ahead_.may_go(following_->waiting, before, now);
+  return first.state == MapState::InFlight && !channel_.is_serial() && pace_.can_pipeline(now) &&
+         ahead_.can_send(following_->waiting, before, now);
 }
 
 void Maps::send(const Place& prepared) {
@@ -704,7 +707,7 @@ void Maps::classify(const Place& sent, const uplink::Outcome& outcome) {
   const std::string sentence = sentence_of(outcome);
   if (std::holds_alternative<uplink::InDoubt>(outcome) && is_cut_by_size(*sent))
     return send_smaller(sent, sent->waiting.cuts.at, 0, sentence);
-  counts_.not_taken(traffic_of(sent->waiting.map), DeliveryFailure::Failed, 0, sentence);
+  counts_.count_undelivered(traffic_of(sent->waiting.map), DeliveryFailure::Failed, 0, sentence);
   retry(sent);
 }
 
@@ -728,7 +731,8 @@ void Maps::on_accepted(const Place& sent, const uplink::Answered& answered) {
   const std::size_t updates = sent->waiting.updates.size();
   if (sent->waiting.again) map.header().stamp = sent->waiting.again;
   // First: the writer works in order.
-  for (const icd::MapUpdate* const said : queues::said_by(sent->waiting)) rejected_.mark_contained(*said);
+  for (const icd::MapUpdate* const said : queues::delivered_maps(sent->waiting))
+    rejected_.mark_contained(*said);
   step(sent, MapEvent::Accepted);
   counts_.count_forwarded(traffic_of(map), updates, sent->packed.body.size(), answered.status,
                           loop_.wall_now());
@@ -745,13 +749,13 @@ void Maps::on_verdict(const Place& sent, const uplink::Answered& answered) {
       return on_accepted(sent, answered);
     case MappingVerdict::Throttled:
       pace_.on_throttled(now, answered.retry_after);
-      counts_.not_taken(traffic, DeliveryFailure::Throttled, answered.status, sentence);
+      counts_.count_undelivered(traffic, DeliveryFailure::Throttled, answered.status, sentence);
       return retry(sent);
     case MappingVerdict::Refused:
       pace_.on_answered(answered.sent, now);
-      if (may_have_been_overtaken(*sent)) {
+      if (can_be_overtaken(*sent)) {
         ++sent->waiting.trial.failures;
-        counts_.not_taken(traffic, DeliveryFailure::Failed, answered.status, sentence);
+        counts_.count_undelivered(traffic, DeliveryFailure::Failed, answered.status, sentence);
         return retry(sent);
       }
       return give_up(sent, answered.status, sentence);
@@ -763,14 +767,14 @@ void Maps::on_verdict(const Place& sent, const uplink::Answered& answered) {
       if (answered.status == kBadRequest && is_cut_by_size(*sent))
         return send_smaller(sent, sent->waiting.cuts.at, answered.status, sentence);
       if (blame_.on_failed(blame_key(sent->waiting.map), sent->waiting.trial, now) ==
-          queues::Blame::Next::Reject)
+          queues::Blame::Decision::Reject)
         return give_up(sent, answered.status,
                        sentence + " (other maps were delivered, this map failed repeatedly)");
-      counts_.not_taken(traffic, DeliveryFailure::Failed, answered.status, sentence);
+      counts_.count_undelivered(traffic, DeliveryFailure::Failed, answered.status, sentence);
       return retry(sent);
     case MappingVerdict::Failing:
       pace_.on_failed(answered, now);
-      counts_.not_taken(traffic, DeliveryFailure::Failed, answered.status, sentence);
+      counts_.count_undelivered(traffic, DeliveryFailure::Failed, answered.status, sentence);
       return retry(sent);
   }
 }
@@ -788,20 +792,20 @@ void Maps::on_too_large(const Place& sent, const uplink::Answered& answered, con
   if (!is_page) return give_up(sent, answered.status, sentence);
   const auto next = blame_.on_failed(blame_key(waiting.map), waiting.trial, loop_.now());
   queue_.on_too_large(sender, waiting.trial);
-  if (next == queues::Blame::Next::Reject) return give_up(sent, answered.status, sentence);
-  counts_.not_taken(traffic_of(waiting.map), DeliveryFailure::Failed, answered.status, sentence);
+  if (next == queues::Blame::Decision::Reject) return give_up(sent, answered.status, sentence);
+  counts_.count_undelivered(traffic_of(waiting.map), DeliveryFailure::Failed, answered.status, sentence);
   retry(sent);
 }
 
 /// The endpoint would not accept it.
-bool Maps::must_split(const Prepared& prepared) const {
+bool Maps::must_split(const PreparedMap& prepared) const {
   const std::size_t size = prepared.packed.body.size();
   return !slot_.fits(size) && queues::can_split(prepared.waiting, size);
 }
 
 /// Of two maps in flight the bytes that had left are not known. A map that cannot be split is retried,
 /// because a fault of the link is never a reason to reject it.
-bool Maps::is_cut_by_size(Prepared& sent) {
+bool Maps::is_cut_by_size(PreparedMap& sent) {
   const std::size_t size = sent.packed.body.size();
   if (size < queues::Cuts::kLeastBody || !queues::can_split(sent.waiting, size)) return false;
   if (sent.went_ahead || channel_.busy()) return false;
@@ -810,14 +814,14 @@ bool Maps::is_cut_by_size(Prepared& sent) {
 
 /// A Command Post that reads slowly checks a small map that followed first: this one's stamp then ran
 /// backward. It is sent once more alone, because a map that failed neither goes ahead nor is followed.
-bool Maps::may_have_been_overtaken(const Prepared& sent) {
+bool Maps::can_be_overtaken(const PreparedMap& sent) {
   return sent.was_followed && sent.waiting.trial.failures == 0;
 }
 
 /// A message that ended after so many bytes was too large.
 void Maps::send_smaller(const Place& sent, std::size_t bytes, int status, const std::string& sentence) {
-  counts_.not_taken(traffic_of(sent->waiting.map), DeliveryFailure::Failed, status,
-                    sentence + "; it is sent in smaller messages");
+  counts_.count_undelivered(traffic_of(sent->waiting.map), DeliveryFailure::Failed, status,
+                            sentence + "; it is sent in smaller messages");
   slot_.on_too_large(std::min(bytes, sent->packed.body.size()));
   ahead_.on_failed(false);
   step(sent, MapEvent::TooLarge);
@@ -832,11 +836,11 @@ void Maps::retry(const Place& sent) {
 void Maps::give_up(const Place& sent, int status, const std::string& sentence) {
   ahead_.on_failed(false);
   queues::QueuedMap& waiting = sent->waiting;
-  counts_.not_taken(traffic_of(waiting.map), DeliveryFailure::Refused, status, sentence);
+  counts_.count_undelivered(traffic_of(waiting.map), DeliveryFailure::Refused, status, sentence);
   if (waiting.again) waiting.map.header().stamp = waiting.again;
   if (!waiting.parts.empty()) return step(sent, MapEvent::RejectedParts);
   rejected_.add(waiting.map, status, sentence, waiting.map.data.bytes.size(),
-                {.let_go = [this, numbers = waiting.updates] { store_.forget(numbers); }}, waiting.bounds);
+                {.release = [this, numbers = waiting.updates] { store_.forget(numbers); }}, waiting.bounds);
   step(sent, MapEvent::Rejected);
 }
 
@@ -858,18 +862,18 @@ void Maps::change_run(dispatch::NextMap next) {
   repack();
   queues::Canvases& canvases = queue_.canvases();
   if (next == dispatch::NextMap::Empty && is_heard_from()) return canvases.begin_run();
-  if (next == dispatch::NextMap::Earlier) return canvases.take_up_run();
+  if (next == dispatch::NextMap::Earlier) return canvases.resume_run();
   canvases.change_run();
 }
 
-void Maps::link_is_back() {
-  pace_.link_is_back();
+void Maps::on_link_up() {
+  pace_.on_link_up();
   channel_.retry_now();
   pump();
 }
 
 bool Maps::stop() {
-  stand_by();
+  set_standby();
   return !channel_.busy();
 }
 
@@ -879,7 +883,7 @@ std::size_t Maps::waiting(const Traffic& traffic) const {
 
 std::optional<loop::Instant> Maps::oldest_acceptance(const Traffic& traffic) const {
   std::optional<loop::Instant> oldest = queue_.oldest(sender_of(traffic));
-  for (const Prepared* prepared : prepared_of(traffic)) {
+  for (const PreparedMap* prepared : prepared_of(traffic)) {
     oldest = std::min(oldest.value_or(prepared->waiting.accepted), prepared->waiting.accepted);
   }
   return oldest;

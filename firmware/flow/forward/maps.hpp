@@ -47,29 +47,30 @@ class Maps {
        std::function<void(icd::MapUpdate)> taken);
 
   /// `ran_before`: this box may have sent maps before.
-  void carry_on(const journal::Carried& carried, bool ran_before);
-  void hold_back() { pace_.on_sent(loop_.now()); }
+  void restore(const journal::HandoverState& carried, bool ran_before);
+  void assume_just_sent() { pace_.on_sent(loop_.now()); }
   void on_settings_changed();
   /// Requests to another address or token are given up and retried at the new one.
-  void endpoint_changed(std::optional<icd::BearerToken> token);
+  void on_endpoint_changed(std::optional<icd::BearerToken> token);
   /// A status confirms the present run.
   void on_status();
   /// Another run is on, so the Command Post may have another map.
   void change_run(dispatch::NextMap next);
   /// Queues the stored maps. Their data is checked when they are packed. A map whose packing ended
-  /// Spool::Ends::kMost processes by a fault is put aside, with the rejected messages.
-  void restore(spool::Spool::Kept kept);
+  /// Spool::EndCounts::kMost processes by a fault is put aside, with the rejected messages.
+  void restore(spool::Spool::KeptMaps kept);
 
   /// With room for a grid that replaces one.
-  std::shared_ptr<intake::MapArrival> arrives(SpooledMapArrival::Accept take) {
-    return store_.arrives([this] { return queue_.largest_replaceable(); }, std::move(take));
+  std::shared_ptr<intake::MapArrival> begin_map(SpooledMapArrival::Accept take) {
+    return store_.begin_map([this] { return queue_.largest_replaceable(); }, std::move(take));
   }
   /// Stamps are on the stamp clock. `file`: of its data, or null. `done`: stored and queued, 429 for a full
   /// queue, 503 if it cannot be stored. Of a grid that newer ones overtook, only the cells outside of them
   /// are queued; a whole cloud that was overtaken is not.
   void accept(icd::MapUpdate update, const queues::Upload& upload, std::shared_ptr<spool::MapFile> file,
               std::function<void(icd::Checked<void>)> done) {
-    accept(std::make_shared<Arrived>(Arrived{std::move(update), upload, std::move(file), std::move(done)}));
+    accept(std::make_shared<ReceivedMap>(
+        ReceivedMap{std::move(update), upload, std::move(file), std::move(done)}));
   }
 
   /// Queues a rejected map before its sender's other maps. `done` is called with true if it is stored, or if
@@ -80,13 +81,13 @@ class Maps {
 
   /// Stops sending, and compares no more clouds. False while an answer is awaited.
   bool stop();
-  void stand_by() { stopping_ = true; }
+  void set_standby() { stopping_ = true; }
   /// True if no map is being stored.
   bool has_stored_all() const { return overtaken_.empty() && store_.count() == 0; }
   /// Why the last map could not be stored, or "".
   const std::string& trouble() const { return store_.trouble(); }
   /// The cable is in again: retries at once.
-  void link_is_back();
+  void on_link_up();
 
   bool packing() const { return is_packing_; }
   const Channel& channel() const { return channel_; }
@@ -97,7 +98,7 @@ class Maps {
 
  private:
   /// A whole map that is not queued yet.
-  struct Arrived {
+  struct ReceivedMap {
     icd::MapUpdate update;
     queues::Upload upload;
     std::shared_ptr<spool::MapFile> file;
@@ -105,22 +106,22 @@ class Maps {
     /// If newer grids overtook it: its cells outside of them, which are queued as grids of their own.
     std::vector<pack::Tile> tiles = {};
     icd::Checked<void> cut = {};
-    std::vector<MapStore::Stored> parts = {};  // stored tiles
+    std::vector<MapStore::StoredMap> parts = {};  // stored tiles
   };
   /// A map that was taken from the queue.
-  struct Prepared {
+  struct PreparedMap {
     queues::QueuedMap waiting;
     queues::MapState state = queues::MapState::Queued;
-    Packed packed{};                           // empty body: nothing to send
-    std::vector<MapStore::Damaged> damaged{};  // cannot be sent
-    loop::Duration packing_took{0};            // by the worker
+    PackedMap packed{};                           // empty body: nothing to send
+    std::vector<MapStore::DamagedMap> damaged{};  // cannot be sent
+    loop::Duration packing_took{0};               // by the worker
     bool went_ahead = false;
     bool was_followed = false;  // the next map went ahead of its answer
     bool begins_again = false;  // a piece, in flight when the Command Post may have lost those before it
     loop::Instant last_byte_not_before{};
     std::optional<loop::Instant> arrived{};  // estimate
   };
-  using Place = std::shared_ptr<Prepared>;
+  using Place = std::shared_ptr<PreparedMap>;
 
   void apply_settings();
   bool is_heard_from() const;
@@ -128,55 +129,55 @@ class Maps {
 
   // Arrival: a map for which there is room is queued once it is stored. A worker then finds queued clouds
   // that newer ones contain.
-  void accept(const std::shared_ptr<Arrived>& map);
+  void accept(const std::shared_ptr<ReceivedMap>& map);
   bool has_room_for(const icd::MapUpdate& update, bool replaces) const;
-  bool is_told(const icd::MapUpdate& update);
-  void on_stored(MapStore::Stored& stored, Arrived& map);
-  void queue(MapStore::Stored& stored);
-  void leave_out(const std::shared_ptr<Arrived>& map, std::span<const icd::GridBounds> newer);
-  void store_next_tile(const std::shared_ptr<Arrived>& map);
-  void accept(Arrived& map);
-  void refuse(Arrived& map, icd::Refusal why) { end(map, std::unexpected(std::move(why))); }
-  void end(Arrived& map, const icd::Checked<void>& outcome);
+  bool record_area(const icd::MapUpdate& update);
+  void on_stored(MapStore::StoredMap& stored, ReceivedMap& map);
+  void queue(MapStore::StoredMap& stored);
+  void store_uncovered(const std::shared_ptr<ReceivedMap>& map, std::span<const icd::GridBounds> newer);
+  void store_next_tile(const std::shared_ptr<ReceivedMap>& map);
+  void accept(ReceivedMap& map);
+  void refuse(ReceivedMap& map, icd::Refusal why) { end(map, std::unexpected(std::move(why))); }
+  void end(ReceivedMap& map, const icd::Checked<void>& outcome);
   void restore(spool::Spool::KeptMap kept);
   void put_aside(spool::Spool::KeptMap kept);
-  void finish_storing(MapStore::Stored& stored, queues::QueuedMap back,
+  void finish_storing(MapStore::StoredMap& stored, queues::QueuedMap back,
                       const std::function<bool(bool kept)>& done);
   queues::QueuedMap requeued_map(std::uint64_t number, icd::MapUpdate update,
                                  const std::optional<icd::GridBounds>& bounds,
-                                 const spool::Spool::Ends& ends) const;
-  void tell_clouds(const icd::MapUpdate& update);
+                                 const spool::Spool::EndCounts& ends) const;
+  void set_cloud_kind(const icd::MapUpdate& update);
   void compare();
-  void on_compared(const queues::Successive& two, bool has_all);
+  void on_compared(const queues::CloudPair& two, bool has_all);
 
   // Packing: a worker packs one map at a time, the next one to send.
   void prepare(bool follows);
   void pack(const Place& prepared);
-  void work_done(const Place& prepared);
-  void work_failed(const Place& prepared);
+  void on_work_done(const Place& prepared);
+  void on_work_failed(const Place& prepared);
   void step(Place map, queues::MapEvent event);
   void recall(const Place& map);
-  void put_back_smaller(Prepared& map);
-  void set_aside(const Prepared& map);
-  std::vector<const Prepared*> prepared_of(const Traffic& traffic) const;
-  std::optional<queues::Replaced> absorb(const queues::QueuedMap& back);
+  void put_back_smaller(PreparedMap& map);
+  void set_aside(const PreparedMap& map);
+  std::vector<const PreparedMap*> prepared_of(const Traffic& traffic) const;
+  std::optional<queues::ReplacedMaps> absorb(const queues::QueuedMap& back);
   void repack();
 
   // Sending, and the answers.
-  void go_on();
+  void advance();
   loop::Instant start_time() const;
   loop::Instant packing_time(loop::Instant now) const;
   void pipeline_map(loop::Instant now);
-  bool may_go_ahead(loop::Instant now) const;
+  bool can_pipeline(loop::Instant now) const;
   void send(const Place& prepared);
   void on_answered(const Place& sent, const uplink::Outcome& outcome);
   void classify(const Place& sent, const uplink::Outcome& outcome);
   void on_verdict(const Place& sent, const uplink::Answered& answered);
   void on_accepted(const Place& sent, const uplink::Answered& answered);
   void on_too_large(const Place& sent, const uplink::Answered& answered, const std::string& sentence);
-  bool must_split(const Prepared& prepared) const;
-  bool is_cut_by_size(Prepared& sent);
-  static bool may_have_been_overtaken(const Prepared& sent);
+  bool must_split(const PreparedMap& prepared) const;
+  bool is_cut_by_size(PreparedMap& sent);
+  static bool can_be_overtaken(const PreparedMap& sent);
   void send_smaller(const Place& sent, std::size_t bytes, int status, const std::string& sentence);
   void retry(const Place& sent);
   void give_up(const Place& sent, int status, const std::string& sentence);
@@ -196,11 +197,11 @@ class Maps {
   MapStore store_;
   Slot slot_;
   queues::OvertakenMaps overtaken_;
-  std::map<Traffic, icd::Stamp> behind_;           // journal::Heard::behind, until restore()
-  std::vector<std::shared_ptr<Arrived>> waiting_;  // for others that are being stored
-  bool are_grids_told_ = true;                     // the journal has the areas of grids
-  bool is_comparing_ = false;                      // a worker compares two clouds
-  Place first_, following_;                        // the next map or the one in flight, and its follower
+  std::map<Traffic, icd::Stamp> behind_;               // journal::Heard::behind, until restore()
+  std::vector<std::shared_ptr<ReceivedMap>> waiting_;  // for others that are being stored
+  bool are_grids_told_ = true;                         // the journal has the areas of grids
+  bool is_comparing_ = false;                          // a worker compares two clouds
+  Place first_, following_;                            // the next map or the one in flight, and its follower
   bool is_packing_ = false;
   loop::JobWatch packing_;
   queues::Pipelining ahead_;

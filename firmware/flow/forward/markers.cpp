@@ -66,7 +66,7 @@ bool MarkerArrivals::begin(Arrival& arrival) {
     counts_.count_replaced({TrafficKind::Markers, ""}, 1);
     return true;
   }
-  if (!queue_.has_room_for(*arrival.update) && !takes_some(arrival)) {
+  if (!queue_.has_room_for(*arrival.update) && !accept_known(arrival)) {
     return fail(
         arrival,
         {.status = icd::Status::TooManyRequests,
@@ -81,9 +81,9 @@ bool MarkerArrivals::begin(Arrival& arrival) {
   return keep(arrival);
 }
 
-bool MarkerArrivals::takes_some(Arrival& arrival) {
+bool MarkerArrivals::accept_known(Arrival& arrival) {
   counts_.no_room({TrafficKind::Markers, ""}, loop_.wall_now());
-  icd::MarkersUpdate known = queue_.those_that_wait(*arrival.update);
+  icd::MarkersUpdate known = queue_.queued_changes(*arrival.update);
   if (known.markers.empty() || !queue_.has_room_for(known)) return false;
   const std::size_t taken = known.markers.size(), all = arrival.update->markers.size();
   arrival.outcome = std::unexpected(
@@ -133,7 +133,7 @@ bool MarkerArrivals::add_part(Arrival& arrival) {
   counts_.count_invisible(invisible);
   arrival.last = queue_.add_part(part, arrival.last);
   arrival.added += part.size();
-  free_needless();
+  free_unneeded();
   if (arrival.added < markers.size()) {
     next_turn_.call_at(loop_.now());
     return false;
@@ -143,7 +143,7 @@ bool MarkerArrivals::add_part(Arrival& arrival) {
 }
 
 /// Up to tens of thousands of markers after a deletion.
-void MarkerArrivals::free_needless() {
+void MarkerArrivals::free_unneeded() {
   auto needless = std::make_shared<std::vector<queues::MarkerChanges>>(queue_.needless());
   if (!needless->empty()) workers_.submit(loop::Urgency::CanWait, [needless] { needless->clear(); }, [] {});
 }
@@ -172,8 +172,8 @@ Markers::Markers(loop::Loop& loop, loop::Workers& workers, const settings::Setti
       queue_(bounds_of(settings.queues)),
       arrivals_(loop, workers, journal, queue_, counts) {}
 
-void Markers::carry_on(const journal::Carried& carried) {
-  pace_.carry_on(carried, loop_.now());
+void Markers::restore(const journal::HandoverState& carried) {
+  pace_.restore(carried, loop_.now());
   if (icd::MarkersUpdate markers = carried.markers(); !markers.markers.empty()) {
     counts_.count_accepted({TrafficKind::Markers, ""}, 0, loop_.wall_now());
     queue_.add(std::move(markers), loop_.now());
@@ -185,8 +185,8 @@ void Markers::on_settings_changed(const settings::Settings& settings) {
   pace_.allow(settings.command_post.rates.markers_hz, loop_.now());
 }
 
-void Markers::endpoint_turned() {
-  pace_.link_is_back();
+void Markers::on_new_command_post() {
+  pace_.on_link_up();
   failed_ = 0;
   blame_ = {};
   trials_.clear();
@@ -282,7 +282,7 @@ bool Markers::is_to_blame(const queues::QueuedMarkers& markers, bool may_reject)
   const icd::Marker& marker = markers.update.markers.front();
   if (trials_.size() >= kMostTrials) trials_.clear();
   const bool to_blame = blame_.on_failed("", trials_[{marker.ns, marker.id}], loop_.now(), may_reject) ==
-                        queues::Blame::Next::Reject;
+                        queues::Blame::Decision::Reject;
   if (!to_blame) {
     journal_.record_markers_answered(false);
     queue_.requeue_last(markers);

@@ -68,11 +68,11 @@ class MarkerArrivals {
   Step next_step() const;
   bool begin(Arrival& arrival);
   /// The queue has no room for the whole update. True: some of its markers can be accepted.
-  bool takes_some(Arrival& arrival);
+  bool accept_known(Arrival& arrival);
   void make_records(const Arrival& arrival);
   bool keep(Arrival& arrival);
   bool add_part(Arrival& arrival);
-  void free_needless();
+  void free_unneeded();
   bool fail(Arrival& arrival, icd::Refusal why);
   void end();
 
@@ -101,9 +101,9 @@ class Markers {
   Markers(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings, TrafficCounts& counts,
           std::mt19937_64& random, journal::Journal& journal, DeliveredScene& delivered);
 
-  void carry_on(const journal::Carried& carried);
+  void restore(const journal::HandoverState& carried);
   void on_settings_changed(const settings::Settings& settings);
-  void endpoint_turned();
+  void on_new_command_post();
   void accept(icd::MarkersUpdate update, queues::Upload upload, MarkerArrivals::Done done) {
     arrivals_.accept(std::move(update), std::move(upload), std::move(done));
   }

@@ -26,7 +26,7 @@ constexpr const char *kMessage = ".cbor", *kReason = ".json";
 std::expected<void, std::string> write_message(const std::string& path, icd::MapUpdate map) {
   const int error = spool::MapFile(path).finish(map, path);
   if (error == 0) return {};
-  return std::unexpected(host::trouble(path, error));
+  return std::unexpected(host::path_error(path, error));
 }
 std::expected<void, std::string> write_message(const std::string& path, const icd::StateUpdate& state) {
   return spool::replace_file(path, codec::write_state_update(state));
@@ -117,7 +117,7 @@ std::string kind_of(const queues::Message& message) {
   return std::string(kKinds[message.index()]);
 }
 
-std::string no_such(std::uint64_t number) {
+std::string not_found(std::uint64_t number) {
   return icd::sentence("there is no rejected message ", number);
 }
 
@@ -214,8 +214,8 @@ void RejectedStore::on_stored(std::uint64_t number, bool well, const Origin& ori
   --being_written_;
   origin.on_stored(well);
   const queues::RejectedMessage* const item = items_.find(number);
-  if (well || item == nullptr || item->replaced) return origin.let_go();
-  in_memory_[number] = origin.let_go;
+  if (well || item == nullptr || item->replaced) return origin.release();
+  in_memory_[number] = origin.release;
 }
 
 void RejectedStore::forget(std::uint64_t number) {
@@ -224,10 +224,10 @@ void RejectedStore::forget(std::uint64_t number) {
         [reason = path(number, kReason), message = path(number, kMessage)] { remove(reason, message); },
         [] {});
   leaving_.erase(number);
-  let_origin_go(number);
+  release_origin(number);
 }
 
-void RejectedStore::let_origin_go(std::uint64_t number) {
+void RejectedStore::release_origin(std::uint64_t number) {
   const auto origin = in_memory_.find(number);
   if (origin == in_memory_.end()) return;
   origin->second();
@@ -241,7 +241,7 @@ bool RejectedStore::mark_contained(const queues::Message& message, std::function
     if (in_memory_.contains(number)) continue;
     all.push_back({path(number, kReason), path(number, kMessage), reason_of(*items_.find(number), true)});
   }
-  for (const std::uint64_t number : replaced) let_origin_go(number);
+  for (const std::uint64_t number : replaced) release_origin(number);
   if (!all.empty()) {
     writer_.submit([all] { std::ranges::for_each(all, write_replaced); },
                    [this, written = std::move(written)] {
@@ -256,7 +256,7 @@ bool RejectedStore::mark_contained(const queues::Message& message, std::function
 
 std::expected<queues::RejectedMessage, std::string> RejectedStore::begin_resend(std::uint64_t number) {
   const queues::RejectedMessage* const item = items_.find(number);
-  if (item == nullptr || leaving_.contains(number)) return std::unexpected(no_such(number));
+  if (item == nullptr || leaving_.contains(number)) return std::unexpected(not_found(number));
   if (item->replaced) {
     return std::unexpected(
         "a newer message that contains it was delivered since; sent now, it would replace the newer message");
@@ -277,7 +277,7 @@ bool RejectedStore::finish_resend(std::uint64_t number, bool kept) {
 }
 
 std::expected<void, std::string> RejectedStore::discard(std::uint64_t number) {
-  if (leaving_.contains(number) || !items_.extract(number)) return std::unexpected(no_such(number));
+  if (leaving_.contains(number) || !items_.extract(number)) return std::unexpected(not_found(number));
   forget(number);
   return {};
 }

@@ -27,7 +27,7 @@ class RejectedStore {
     /// Called once: whether the message has a file here. If not, it is in memory alone.
     std::function<void(bool kept)> on_stored = [](bool) {};
     /// Called once: the origin may delete its file.
-    std::function<void()> let_go = [] {};
+    std::function<void()> release = [] {};
   };
 
   /// `writer` outlives this.
@@ -69,7 +69,7 @@ class RejectedStore {
   void keep(const queues::RejectedMessage& item, Origin origin);
   void on_stored(std::uint64_t number, bool well, const Origin& origin);
   void forget(std::uint64_t number);
-  void let_origin_go(std::uint64_t number);
+  void release_origin(std::uint64_t number);
   icd::Checked<void> restore_one(std::uint64_t number);
 
   const loop::Loop& loop_;

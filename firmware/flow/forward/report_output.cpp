@@ -55,7 +55,7 @@ void ReportOutput::follow_up() {
   for (const Step& step : std::exchange(unlogged_, {})) {
     const bool for_the_operator = step.state == ReportState::InDoubt || step.state == ReportState::Held;
     host::log(for_the_operator ? host::Level::Warning : host::Level::Notice,
-              "report " + std::string(dispatch::shown_name_of(step.state)),
+              "report " + std::string(dispatch::display_name(step.state)),
               {{"report", std::to_string(step.number)},
                {"type", step.type},
                {"sender", step.sender},
@@ -82,8 +82,8 @@ bool ReportOutput::write(std::span<const dispatch::Report> steps, const dispatch
   return true;
 }
 
-void ReportOutput::tell(dispatch::ClientId client, const dispatch::ClientAnswer& answer,
-                        const dispatch::Report& report) {
+void ReportOutput::answer_client(dispatch::ClientId client, const dispatch::ClientAnswer& answer,
+                                 const dispatch::Report& report) {
   last_told_ = answer;
   const auto waiting = clients_.extract(client);
   if (!waiting) return;

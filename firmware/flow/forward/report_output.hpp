@@ -26,12 +26,12 @@ class ReportOutput final : public dispatch::Output {
   /// A client without answers, for the operator, who watches the report.
   dispatch::ClientId add_nobody() { return ++last_client_; }
   /// The last answer to any client.
-  const dispatch::ClientAnswer& last_told() const { return last_told_; }
+  const dispatch::ClientAnswer& last_answer() const { return last_told_; }
 
   bool write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
              dispatch::Flush flush) override;
-  void tell(dispatch::ClientId client, const dispatch::ClientAnswer& answer,
-            const dispatch::Report& report) override;
+  void answer_client(dispatch::ClientId client, const dispatch::ClientAnswer& answer,
+                     const dispatch::Report& report) override;
 
   /// Why the last write to the ledger failed, or "".
   const std::string& trouble() const { return trouble_; }

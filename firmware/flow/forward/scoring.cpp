@@ -73,7 +73,8 @@ dispatch::ReportRules rules_of(const settings::Reports& reports) {
 
 using dispatch::Reports;
 
-Reports::Outcome carry_out(Reports& reports, std::int64_t number, api::Action action, dispatch::Time time) {
+Reports::Outcome apply_action(Reports& reports, std::int64_t number, api::Action action,
+                              dispatch::Time time) {
   using enum api::Action;
   switch (action) {
     case Send:
@@ -118,10 +119,10 @@ Scoring::Scoring(loop::Loop& loop, uplink::Servers& servers, ledger::Ledger& led
                [this] { pump(); }),
       pace_(settings.command_post.rates, random, journal),
       wake_(loop.timer([this] { pump(); })),
-      deadline_(loop.timer([this] { deadline_came(); })) {}
+      deadline_(loop.timer([this] { on_deadline(); })) {}
 
 void Scoring::start(std::vector<dispatch::Run> runs) {
-  reports_->clock_stepped(clocks_.clock_step());
+  reports_->on_clock_step(clocks_.clock_step());
   // On standby without the address, so that no run begins.
   reports_->open(ledger_.reports(), std::move(runs), time(), stopping_ ? "" : channel_.address());
   if (stopping_) return;
@@ -130,25 +131,25 @@ void Scoring::start(std::vector<dispatch::Run> runs) {
 }
 
 void Scoring::on_settings_changed() {
-  reports_->go_by(rules_of(settings_.reports));
+  reports_->set_rules(rules_of(settings_.reports));
   pace_.allow(settings_.command_post.rates, loop_.now());
   pump();
 }
 
-void Scoring::endpoint_changed(std::optional<icd::BearerToken> token) {
+void Scoring::on_endpoint_changed(std::optional<icd::BearerToken> token) {
   channel_.lead_to(access_to_scoring(settings_.command_post, std::move(token)));
   if (channel_.busy()) reports_->prepare_move(address_text(settings_.command_post.scoring), time());
   pump();
 }
 
-void Scoring::endpoint_turned() {
-  pace_.endpoint_turned();
+void Scoring::on_new_command_post() {
+  pace_.on_new_command_post();
   reports_paused_until_ = status_paused_until_ = {};
   status_cache_ = {};
   ask_at_ = loop_.now();
   auto next = std::make_unique<dispatch::Reports>(rules_of(settings_.reports), output_);
-  next->clock_stepped(clocks_.clock_step());
-  next->carry_on(*reports_, time(), channel_.address());
+  next->on_clock_step(clocks_.clock_step());
+  next->adopt(*reports_, time(), channel_.address());
   reports_ = std::move(next);
   watch_deadlines();
   counts_.notify_changed();
@@ -185,12 +186,12 @@ void Scoring::status(std::shared_ptr<intake::Responder> responder) {
   is_status_wanted_ = true;
   status_clients_.add(std::move(responder), now);
   pump();
-  if (!asked_status_ && !may_ask_soon(now)) answer_clients(now + StatusClients::kWait);
+  if (!asked_status_ && !can_ask_soon(now)) answer_clients(now + StatusClients::kWait);
   watch_deadlines();
 }
 
 /// No report goes first, and the pace allows it in time.
-bool Scoring::may_ask_soon(loop::Instant now) const {
+bool Scoring::can_ask_soon(loop::Instant now) const {
   const dispatch::NextRequests requests = reports_->next_requests(time());
   return !channel_.busy() && channel_.is_free() && (!requests.report || is_status_first(now)) &&
          status_ready(requests) <= now + StatusClients::kWait;
@@ -225,7 +226,7 @@ std::string Scoring::status_obstacle() const {
 }
 
 void Scoring::pump() noexcept {
-  if (!stopping_ && channel_.turns()) endpoint_turned();
+  if (!stopping_ && channel_.turns()) on_new_command_post();
   if (stopping_ || !channel_.has_token()) return;
   const dispatch::Time at = time();
   const loop::Instant now = at.now;
@@ -261,7 +262,7 @@ bool Scoring::is_free(const dispatch::NextRequests& requests, loop::Instant now)
   }
   channel_.give_way();
   asked_status_.reset();
-  pace_.status_lost(now);
+  pace_.on_status_lost(now);
   ask_at_ = now;
   return true;
 }
@@ -269,28 +270,28 @@ bool Scoring::is_free(const dispatch::NextRequests& requests, loop::Instant now)
 void Scoring::send_next() {
   if (const dispatch::Report* const chosen = reports_->choose(time())) return send(*chosen);
   // The write failed, or it was a repeat: do not send it.
-  if (!trouble().empty()) pace_.report_failed(loop_.now());
+  if (!trouble().empty()) pace_.on_report_failed(loop_.now());
   wake_.call_at(std::max(pace_.report_ready(), loop_.now()));
 }
 
 void Scoring::send(const dispatch::Report& report) {
   ++reports_in_a_row_;
-  pace_.report_sent(loop_.now());
+  pace_.on_report_sent(loop_.now());
   const std::string body = codec::write_artifact_report(report.report);
   channel_.send(icd::Uri::ArtifactReports, codec::kJson,
                 icd::ChunkedBytes({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()}),
-                [this](const uplink::Outcome& outcome) { report_answered(outcome); });
+                [this](const uplink::Outcome& outcome) { on_report_answer(outcome); });
 }
 
 /// First, because the rules use the length of the silence.
-void Scoring::hear_time() {
+void Scoring::correct_clock() {
   const auto there = channel_.last().command_post_time();
-  if (there && clocks_.hear(*there)) reports_->clock_stepped(clocks_.clock_step());
+  if (there && clocks_.correct(*there)) reports_->on_clock_step(clocks_.clock_step());
 }
 
-void Scoring::report_answered(const uplink::Outcome& outcome) {
+void Scoring::on_report_answer(const uplink::Outcome& outcome) {
   classify_report(outcome);
-  status_cache_.no_longer_fresh();  // score and remaining reports may have changed
+  status_cache_.mark_stale();  // score and remaining reports may have changed
   ask_at_ = loop_.now();
   watch_deadlines();
   counts_.notify_changed();
@@ -298,7 +299,7 @@ void Scoring::report_answered(const uplink::Outcome& outcome) {
 }
 
 void Scoring::classify_report(const uplink::Outcome& outcome) {
-  hear_time();
+  correct_clock();
   const loop::Instant now = loop_.now();
   if (const auto* answered = std::get_if<uplink::Answered>(&outcome)) {
     const std::int64_t number = reports_->sending()->number;
@@ -309,19 +310,19 @@ void Scoring::classify_report(const uplink::Outcome& outcome) {
                                                               time());
     correct_status(reports_->book().at(number));
     if (event == dispatch::ReportEvent::Throttled) {
-      pace_.report_throttled(answered->sent, answered->retry_after, now);
+      pace_.on_report_throttled(answered->sent, answered->retry_after, now);
     } else if (event == dispatch::ReportEvent::Barred) {
-      pace_.report_barred(answered->sent, now);
+      pace_.on_report_barred(answered->sent, now);
     } else {
-      pace_.report_taken(answered->sent, now);
+      pace_.on_report_accepted(answered->sent, now);
       reports_paused_until_ = now + UriPace::pause_of(outcome);
     }
   } else if (const auto* never = std::get_if<uplink::NeverSent>(&outcome)) {
-    reports_->never_left(never->why, time());
-    pace_.report_failed(now);
+    reports_->on_never_sent(never->why, time());
+    pace_.on_report_failed(now);
   } else {
     reports_->on_lost(sentence_of(outcome), time());
-    pace_.report_lost(now);
+    pace_.on_report_lost(now);
   }
 }
 
@@ -330,7 +331,7 @@ void Scoring::classify_report(const uplink::Outcome& outcome) {
 void Scoring::correct_status(const dispatch::Report& answered) {
   if (answered.state != dispatch::ReportState::Answered) return;
   // A run that seemed to begin may have been the same one.
-  if (!reports_->runs().may_be(status_run_, answered.run)) return;
+  if (!reports_->runs().can_be(status_run_, answered.run)) return;
   const auto reply = codec::read_report_reply(answered.answer);
   if (reply && !dispatch::is_about_another(*reply, answered.report))
     status_cache_.add_report(dispatch::effect_of(*reply), reply->run_clock, loop_.now());
@@ -350,7 +351,7 @@ void Scoring::answer_clients(loop::Instant now) {
   status_clients_.answer_due(now, longest, known ? *known : no_status(status_obstacle()));
 }
 
-void Scoring::deadline_came() {
+void Scoring::on_deadline() {
   answer_clients(loop_.now());
   tick();
   counts_.notify_changed();
@@ -367,12 +368,12 @@ void Scoring::ask_status(bool decides) {
   is_status_wanted_ = false;
   reports_in_a_row_ = 0;
   asked_status_ = {.at = loop_.now(), .decides = decides};
-  pace_.status_sent(asked_status_->at);
+  pace_.on_status_sent(asked_status_->at);
   channel_.send(icd::Uri::Status, "", {},
-                [this](const uplink::Outcome& outcome) { status_answered(outcome); });
+                [this](const uplink::Outcome& outcome) { on_status_answer(outcome); });
 }
 
-void Scoring::status_answered(const uplink::Outcome& outcome) {
+void Scoring::on_status_answer(const uplink::Outcome& outcome) {
   const loop::Instant asked = std::exchange(asked_status_, std::nullopt)->at;
   ask_at_ = channel_.is_trial_due() ? loop_.now() : loop_.now() + kAskEvery;
   classify_status(outcome, asked);
@@ -382,39 +383,39 @@ void Scoring::status_answered(const uplink::Outcome& outcome) {
 }
 
 void Scoring::classify_status(const uplink::Outcome& outcome, loop::Instant asked) {
-  hear_time();
+  correct_clock();
   const loop::Instant now = loop_.now();
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
   if (answered != nullptr) asked = answered->began;  // it may have waited for a connection
   const auto run = answered != nullptr && answered->status == 200 ? codec::read_run_status(answered->body)
                                                                   : std::unexpected<std::string>("");
   if (answered != nullptr && answered->wants_slash == true) {
-    pace_.status_taken(answered->sent, now);
+    pace_.on_status_accepted(answered->sent, now);
     ask_at_ = now;  // clients keep waiting
     return;
   }
   if (run) status_cache_.on_status(answered->body, *run, asked, loop_.stamp_now());  // sent with its age
   if (answered == nullptr) {
-    pace_.status_failed(outcome, now);
+    pace_.on_status_failed(outcome, now);
     status_clients_.answer_all(known_or(no_status(sentence_of(outcome))));
   } else if (answered->status == icd::kTooManyRequests) {
-    pace_.status_throttled(answered->sent, answered->retry_after, now);
+    pace_.on_status_throttled(answered->sent, answered->retry_after, now);
     status_clients_.answer_all(known_or(client_answer(*answered)));
   } else {
-    pace_.status_taken(answered->sent, now);
+    pace_.on_status_accepted(answered->sent, now);
     status_paused_until_ = now + UriPace::pause_of(outcome);
     const bool refused = answered->status >= 400 && answered->status < 500 && !channel_.last().is_foreign();
     status_clients_.answer_all(refused ? client_answer(*answered) : known_or(no_status_in(*answered)));
   }
   if (run) {
-    reports_->status_heard(*run, asked, time());
+    reports_->on_status(*run, asked, time());
     status_run_ = reports_->run().number;
   } else {
-    reports_->status_failed(channel_.has_page_for_status() ? dispatch::NoStatus::Page
-                            : std::holds_alternative<uplink::NeverSent>(outcome)
-                                ? dispatch::NoStatus::NoAnswer
-                                : dispatch::NoStatus::Other,
-                            time());
+    reports_->on_status_failed(channel_.has_page_for_status() ? dispatch::NoStatus::Page
+                               : std::holds_alternative<uplink::NeverSent>(outcome)
+                                   ? dispatch::NoStatus::NoAnswer
+                                   : dispatch::NoStatus::Other,
+                               time());
   }
 }
 
@@ -424,7 +425,7 @@ intake::Answer Scoring::known_or(intake::Answer failure) const {
 }
 
 dispatch::Reports::Outcome Scoring::decide(std::int64_t number, api::Action action) noexcept {
-  const Reports::Outcome outcome = carry_out(*reports_, number, action, time());
+  const Reports::Outcome outcome = apply_action(*reports_, number, action, time());
   counts_.notify_changed();
   pump();
   return outcome;
@@ -434,8 +435,8 @@ dispatch::Reports::Outcome Scoring::report(const icd::ArtifactReport& report, bo
   if (stopping_) return std::unexpected("the box is stopping; the report was not accepted");
   const dispatch::ClientId nobody = output_.add_nobody();
   accept({.report = report, .sender = "operator", .resubmit = resubmit, .can_be_undone = true}, nobody);
-  if (const auto number = reports_->awaited_by(nobody)) return *number;
-  const dispatch::ClientAnswer told = output_.last_told();
+  if (const auto number = reports_->awaited_report(nobody)) return *number;
+  const dispatch::ClientAnswer told = output_.last_answer();
   if (told.number == 0) return std::unexpected(told.sentence);
   return told.number;
 }
@@ -455,8 +456,8 @@ std::int64_t Scoring::begin_run() noexcept {
   return number;
 }
 
-void Scoring::link_is_back() {
-  pace_.link_is_back();
+void Scoring::on_link_up() {
+  pace_.on_link_up();
   channel_.retry_now();
   schedule_status();  // its state is news
 }

@@ -83,7 +83,7 @@ class StatusCache {
   /// same one. `run_clock`: of the answer; 0: none.
   void add_report(const dispatch::Effect& effect, double run_clock, loop::Instant now);
   /// The status may have changed. It is still an answer.
-  void no_longer_fresh() { fresh_ = false; }
+  void mark_stale() { fresh_ = false; }
 
   const std::optional<icd::RunStatus>& run() const { return run_; }
   std::optional<alarms::ShownClock> run_clock(icd::Stamp now) const { return run_clock_.at(now); }
@@ -121,16 +121,16 @@ class Scoring {
           const settings::Settings& settings, std::optional<icd::BearerToken> token, TrafficCounts& counts,
           std::mt19937_64& random, journal::Journal& journal, Clocks& clocks);
 
-  void carry_on(const journal::Carried& carried) { pace_.carry_on(carried, loop_.now()); }
-  void hold_back() { pace_.hold_back(loop_.now()); }
+  void restore(const journal::HandoverState& carried) { pace_.restore(carried, loop_.now()); }
+  void assume_just_sent() { pace_.assume_just_sent(loop_.now()); }
   /// For the operator's test.
   UriPace& status_pace() { return pace_.status_pace(); }
   void on_settings_changed();
   /// Answers in flight still come from the old endpoint. At another endpoint the run's data is cleared.
   /// Clients keep waiting.
-  void endpoint_changed(std::optional<icd::BearerToken> token);
+  void on_endpoint_changed(std::optional<icd::BearerToken> token);
   /// Call before start(): opens no connection and sends no request.
-  void stand_by() { stopping_ = true; }
+  void set_standby() { stopping_ = true; }
   /// Starts from the ledger, which has these `runs`, and connects.
   void start(std::vector<dispatch::Run> runs);
 
@@ -152,7 +152,7 @@ class Scoring {
   /// awaited: call again.
   bool stop();
   /// The cable is in again: retries at once.
-  void link_is_back();
+  void on_link_up();
   /// Also answers the client of the report in flight.
   void dismiss();
 
@@ -170,28 +170,28 @@ class Scoring {
     bool decides;  // a report waits for it
   };
 
-  void hear_time();
+  void correct_clock();
   /// Reports get stamps, because the stamp clock is never set and rules compare the times.
   dispatch::Time time() const { return {loop_.now(), loop_.stamp_now()}; }
-  void endpoint_turned();
+  void on_new_command_post();
   void accept(const dispatch::PostedReport& posted, dispatch::ClientId client) noexcept;
   void schedule_status();
   void pump() noexcept;
   bool is_free(const dispatch::NextRequests& requests, loop::Instant now);
   void send(const dispatch::Report& report);
   void send_next();
-  void report_answered(const uplink::Outcome& outcome);
+  void on_report_answer(const uplink::Outcome& outcome);
   void classify_report(const uplink::Outcome& outcome);
   void correct_status(const dispatch::Report& answered);
   void ask_status(bool decides);
-  void status_answered(const uplink::Outcome& outcome);
+  void on_status_answer(const uplink::Outcome& outcome);
   void classify_status(const uplink::Outcome& outcome, loop::Instant asked);
   void watch_deadlines();
   void answer_clients(loop::Instant now);
   loop::Instant status_ready(const dispatch::NextRequests& requests) const;
-  bool may_ask_soon(loop::Instant now) const;
+  bool can_ask_soon(loop::Instant now) const;
   bool is_status_first(loop::Instant now) const;
-  void deadline_came();
+  void on_deadline();
   std::string status_obstacle() const;
   intake::Answer known_or(intake::Answer failure) const;
 

@@ -26,7 +26,7 @@ void Slot::allow(std::uint64_t most) {
 }
 
 /// A longer time counts at once. Of its excess over shorter ones, a third is left after eight of them.
-void Slot::packing_took(loop::Duration took) {
+void Slot::on_packing_done(loop::Duration took) {
   packing_takes_ = std::max(took, packing_takes_ - (packing_takes_ - took) / 8);
 }
 
@@ -37,7 +37,7 @@ void Slot::on_packed(std::size_t points, std::size_t bytes, queues::Precision pr
 }
 
 /// Bytes that were held back give only a lower limit of the speed.
-void Slot::on_sent(std::size_t bytes, const uplink::Sent& sent, loop::Instant last_byte_not_before) {
+void Slot::on_sent(std::size_t bytes, const uplink::SendTimes& sent, loop::Instant last_byte_not_before) {
   if (bytes < kTelling) return;
   const double took = std::max(Seconds(sent.last - sent.first).count(), 1e-6);
   const double seen = std::min(static_cast<double>(bytes) / took, most_);
@@ -47,7 +47,7 @@ void Slot::on_sent(std::size_t bytes, const uplink::Sent& sent, loop::Instant la
 
 /// Small maps are ignored, because their times vary, and many grids take far less time than expected. After
 /// each map that was not compressed, the box counts as a little less slow, so that Adit forgets a stall.
-void Slot::worker_took(loop::Duration took, double expected) {
+void Slot::on_work_done(loop::Duration took, double expected) {
   constexpr double kLeastExpected = 0.5e-3, kFastest = 0.5, kSlowest = 100;
   constexpr double kForgets = 1.0 / 32;
   if (expected == 0 && slowness_ > 1) slowness_ -= (slowness_ - 1) * kForgets;
@@ -55,11 +55,11 @@ void Slot::worker_took(loop::Duration took, double expected) {
   slowness_ = std::clamp((slowness_ + Seconds(took).count() / expected) / 2, kFastest, kSlowest);
 }
 
-pack::Hurry Slot::hurry(loop::Duration spacing) const {
+pack::EffortInput Slot::effort_input(loop::Duration spacing) const {
   return {.bytes_per_second = bytes_per_second_, .slowness = slowness_, .longest = Seconds(spacing).count()};
 }
 
-void Slot::link_delivers(std::uint64_t bytes_per_second) {
+void Slot::set_link_rate(std::uint64_t bytes_per_second) {
   if (bytes_per_second == 0) return;
   bytes_per_second_ = std::min(bytes_per_second_, static_cast<double>(bytes_per_second));
 }

@@ -24,17 +24,17 @@ class Slot {
   void allow(std::uint64_t most);
 
   /// A map was packed, which took so long.
-  void packing_took(loop::Duration took);
+  void on_packing_done(loop::Duration took);
   /// Effort::Full packs so many bytes of a cloud's points to so many, at that precision.
   void on_packed(std::size_t points, std::size_t bytes, queues::Precision precision);
   /// A worker took so long to pack a map for which pack::seconds_for() expects so many seconds; 0: the map
   /// was not compressed.
-  void worker_took(loop::Duration took, double expected);
+  void on_work_done(loop::Duration took, double expected);
   /// So many bytes left, of which the last were held back until then.
-  void on_sent(std::size_t bytes, const uplink::Sent& sent, loop::Instant last_byte_not_before);
+  void on_sent(std::size_t bytes, const uplink::SendTimes& sent, loop::Instant last_byte_not_before);
 
   /// The link takes no more than so many bytes a second now; 0: not known.
-  void link_delivers(std::uint64_t bytes_per_second);
+  void set_link_rate(std::uint64_t bytes_per_second);
 
   /// The endpoint accepted a message of so many bytes, or answered that it is too large.
   void on_passed(std::size_t bytes);
@@ -56,7 +56,7 @@ class Slot {
   loop::Duration transfer(std::size_t bytes) const;
   /// The conditions that decide the effort for a map, if maps are `spacing` apart. Until a map has shown how
   /// fast the link is, it is as fast as allow() says.
-  pack::Hurry hurry(loop::Duration spacing) const;
+  pack::EffortInput effort_input(loop::Duration spacing) const;
   /// How many bytes of points, not packed, leave within `spacing` and within limit(), at each precision: by
   /// the last cloud, and by what rounding makes of clouds.
   queues::PointsAt points_for(loop::Duration spacing) const;
@@ -65,7 +65,7 @@ class Slot {
   loop::Duration packing_takes_{0};
   double most_ = 1, bytes_per_second_ = 1;
   double packed_to_ = 1;  // of a byte of a cloud that is exact
-  double slowness_ = 1;   // pack::Hurry's
+  double slowness_ = 1;   // pack::EffortInput's
   static constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
   std::size_t largest_ = 0;  // that the endpoint accepted
   std::size_t limit_ = kNoLimit;

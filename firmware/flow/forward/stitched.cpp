@@ -71,10 +71,10 @@ bool was_rounded(const icd::MapUpdate& before, const icd::MapUpdate& after) {
 
 }  // namespace
 
-Packed pack_map(const queues::QueuedMap& waiting, const Packing& packing) {
+PackedMap pack_map(const queues::QueuedMap& waiting, const Packing& packing) {
   auto whole = assemble(waiting);
   if (!whole) return {};
-  Packed packed;
+  PackedMap packed;
   if (waiting.piece.size > 0 && has_no_valid_point(*whole)) {
     packed.has_no_valid_point = true;
     return packed;

@@ -14,7 +14,7 @@
 namespace adit::forward {
 
 /// A map in its form for the Command Post.
-struct Packed {
+struct PackedMap {
   icd::ChunkedBytes body;           // empty: has_no_valid_point, or the data of a part is damaged
   icd::MapData stitched;            // cells from its parts
   bool has_no_valid_point = false;  // a piece of a cloud; nothing is sent
@@ -30,12 +30,12 @@ struct Packed {
 struct Packing {
   bool arranges_clouds = true;
   /// Decides the effort for grids and for clouds that are not rounded.
-  pack::Hurry hurry{};
+  pack::EffortInput hurry{};
 };
 
 /// Rounds a cloud to waiting.precision, or keeps it exact if that is impossible. A map that goes as it is
 /// (queues::PackingRule) only loses invalid points. CPU-bound: call on a worker.
-Packed pack_map(const queues::QueuedMap& waiting, const Packing& packing = {});
+PackedMap pack_map(const queues::QueuedMap& waiting, const Packing& packing = {});
 
 /// The map with its cells, stitched from its parts over the ground if necessary, or with the points or
 /// rows that are sent next. An error describes the fault in the data.

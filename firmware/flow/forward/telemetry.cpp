@@ -19,8 +19,8 @@ States::States(loop::Loop& loop, const settings::Settings& settings, TrafficCoun
       delivered_(delivered),
       pace_(kUri, settings.command_post.rates.state_hz, random, journal) {}
 
-void States::carry_on(const journal::Carried& carried) {
-  pace_.carry_on(carried, loop_.now());
+void States::restore(const journal::HandoverState& carried) {
+  pace_.restore(carried, loop_.now());
   for (const auto& [name, robot] : carried.robots()) {
     const double behind = carried.lag(name.text(), static_cast<std::size_t>(TrafficKind::State));
     queue_.add({&robot.posted, 1}, std::isnan(behind) ? loop_.now() : instant_of(loop_, behind));
@@ -30,9 +30,9 @@ void States::carry_on(const journal::Carried& carried) {
   queue_.begin_run();  // perhaps from before this run: each goes once
 }
 
-void States::endpoint_turned() {
-  pace_.link_is_back();
-  queue_.forget_what_was_taken();
+void States::on_new_command_post() {
+  pace_.on_link_up();
+  queue_.forget_accepted();
   queue_.join_all();
   failed_ = 0;
   blame_ = {};
@@ -110,7 +110,7 @@ bool States::is_to_blame(const queues::QueuedState& state, bool may_reject) {
     if (to_blame) pace_.forget_failures();
   } else if (queues::Trial* const trial = queue_.trial_of(state)) {
     to_blame = blame_.on_failed(state.update.poses.front().name.text(), *trial, loop_.now(), may_reject) ==
-               queues::Blame::Next::Reject;
+               queues::Blame::Decision::Reject;
   }
   if (!to_blame) put_back(state);
   return to_blame;
@@ -151,9 +151,9 @@ Telemetry::Telemetry(loop::Loop& loop, uplink::Servers& servers, loop::Workers& 
       states_(loop, settings, counts, random, journal, delivered),
       markers_(loop, workers, settings, counts, random, journal, delivered) {}
 
-void Telemetry::carry_on(const journal::Carried& carried) {
-  states_.carry_on(carried);
-  markers_.carry_on(carried);
+void Telemetry::restore(const journal::HandoverState& carried) {
+  states_.restore(carried);
+  markers_.restore(carried);
 }
 
 void Telemetry::on_settings_changed() {
@@ -162,7 +162,7 @@ void Telemetry::on_settings_changed() {
   pump();
 }
 
-void Telemetry::endpoint_changed(std::optional<icd::BearerToken> token) {
+void Telemetry::on_endpoint_changed(std::optional<icd::BearerToken> token) {
   channel_.lead_to(access_to_mapping(settings_.command_post, std::move(token)));
   channel_.give_up();
   pump();
@@ -178,8 +178,8 @@ icd::Checked<void> Telemetry::accept(const std::vector<queues::PostedPose>& pose
 void Telemetry::pump() noexcept {
   if (markers_.show_some()) return wake_.call_at(loop_.now());
   if (!stopping_ && !rejected_writes_ && channel_.turns()) {
-    states_.endpoint_turned();
-    markers_.endpoint_turned();
+    states_.on_new_command_post();
+    markers_.on_new_command_post();
   }
   if (stopping_ || rejected_writes_ || channel_.busy() || !channel_.has_token()) return;
   send_next();
@@ -238,7 +238,7 @@ void Telemetry::classify(Of& of, const typename Of::Sent& sent, std::size_t byte
   const int status = answer != nullptr ? answer->status : 0;
   const auto verdict = answer != nullptr ? dispatch::mapping_verdict(status, dispatch::body_of(answer->body))
                                          : MappingVerdict::Failing;
-  const bool concerns_a_part = dispatch::may_concern_a_part(status) && verdict != MappingVerdict::Refused;
+  const bool concerns_a_part = dispatch::can_concern_part(status) && verdict != MappingVerdict::Refused;
   const bool is_to_blame = concerns_a_part && of.is_to_blame(*sent, verdict == MappingVerdict::Suspect ||
                                                                         verdict == MappingVerdict::TooLarge);
   std::string sentence = verdict == MappingVerdict::Taken ? "" : sentence_of(outcome, bytes);
@@ -249,7 +249,7 @@ void Telemetry::classify(Of& of, const typename Of::Sent& sent, std::size_t byte
     if (verdict == MappingVerdict::Taken) {
       counts_.count_forwarded(traffic, 1, bytes, status, loop_.wall_now());
     } else {
-      counts_.not_taken(traffic, failure_of(verdict), status, sentence);
+      counts_.count_undelivered(traffic, failure_of(verdict), status, sentence);
     }
   }
   switch (verdict) {
@@ -309,9 +309,9 @@ bool Telemetry::resend(const queues::Message& message) {
   return kept;
 }
 
-void Telemetry::link_is_back() {
-  states_.pace().link_is_back();
-  markers_.pace().link_is_back();
+void Telemetry::on_link_up() {
+  states_.pace().on_link_up();
+  markers_.pace().on_link_up();
   channel_.retry_now();
   pump();
 }

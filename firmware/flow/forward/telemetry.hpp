@@ -31,9 +31,9 @@ class States {
   States(loop::Loop& loop, const settings::Settings& settings, TrafficCounts& counts, std::mt19937_64& random,
          journal::Journal& journal, DeliveredScene& delivered);
 
-  void carry_on(const journal::Carried& carried);
+  void restore(const journal::HandoverState& carried);
   /// Another Command Post knows no robots yet.
-  void endpoint_turned();
+  void on_new_command_post();
   /// Telemetry::change_run(), has_room_for(), accept() and resend().
   void begin_run() { queue_.begin_run(); }
   icd::Checked<void> has_room_for(const icd::StateUpdate& update);
@@ -43,7 +43,7 @@ class States {
   UriPace& pace() { return pace_; }
   bool empty() const { return queue_.empty(); }
   /// StateQueue::next()
-  std::optional<queues::StateQueue::Next> next() const { return queue_.next(loop_.now()); }
+  std::optional<queues::StateQueue::NextState> next() const { return queue_.next(loop_.now()); }
   /// When the robot's pose was accepted that is queued or in flight.
   std::optional<loop::Instant> accepted_at(const std::string& robot) const;
   /// The next message, stamped and journaled as sent. Null: none.
@@ -88,8 +88,8 @@ class Telemetry {
             DeliveredScene& delivered);
 
   /// Restores the messages of earlier processes.
-  void carry_on(const journal::Carried& carried);
-  void hold_back() {
+  void restore(const journal::HandoverState& carried);
+  void assume_just_sent() {
     states_.pace().on_sent(loop_.now());
     markers_.pace().on_sent(loop_.now());
   }
@@ -97,9 +97,9 @@ class Telemetry {
   UriPace& state_pace() { return states_.pace(); }
   void on_settings_changed();
   /// Requests to another address or token are given up and retried at the new one.
-  void endpoint_changed(std::optional<icd::BearerToken> token);
+  void on_endpoint_changed(std::optional<icd::BearerToken> token);
   /// Before start(): opens no connection and sends no request.
-  void stand_by() { stopping_ = true; }
+  void set_standby() { stopping_ = true; }
   void start() {
     if (stopping_) return;
     channel_.keep_warm();
@@ -129,7 +129,7 @@ class Telemetry {
   /// Stops sending. False while an answer is awaited.
   bool stop();
   /// The cable is in again: retries at once.
-  void link_is_back();
+  void on_link_up();
   const Channel& channel() const { return channel_; }
   std::size_t waiting(TrafficKind kind) const;
   /// When the robot's pose, or the oldest change of a marker, was accepted that is queued or in flight.

@@ -74,8 +74,8 @@ void TrafficCounts::count_forwarded(const Traffic& traffic, std::size_t updates,
   changed_();
 }
 
-void TrafficCounts::not_taken(const Traffic& traffic, DeliveryFailure how, int status,
-                              const std::string& sentence) {
+void TrafficCounts::count_undelivered(const Traffic& traffic, DeliveryFailure how, int status,
+                                      const std::string& sentence) {
   facts::ActivityRow& activity = row(traffic);
   if (how == DeliveryFailure::Throttled) ++activity.throttled;
   if (how == DeliveryFailure::Failed) ++activity.failed;

@@ -85,7 +85,8 @@ class TrafficCounts {
   void count_forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes, int status,
                        api::Time now);
   /// `status` 0: no status came.
-  void not_taken(const Traffic& traffic, DeliveryFailure how, int status, const std::string& sentence);
+  void count_undelivered(const Traffic& traffic, DeliveryFailure how, int status,
+                         const std::string& sentence);
 
   void count_rejected(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal, api::Time now);
 

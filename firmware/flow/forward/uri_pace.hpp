@@ -40,14 +40,14 @@ class UriPace {
     return {.first = std::max(earliest.first, retry_at_), .last = std::max(earliest.last, retry_at_)};
   }
 
-  /// pace::RateLimit::may_go_ahead(), and no back-off.
-  bool may_go_ahead(pace::Instant now) const { return rate_.may_go_ahead() && now >= retry_at_; }
+  /// pace::RateLimit::can_pipeline(), and no back-off.
+  bool can_pipeline(pace::Instant now) const { return rate_.can_pipeline() && now >= retry_at_; }
 
   pace::Duration spacing() const { return rate_.spacing(); }
 
-  void carry_on(const journal::Carried& carried, pace::Instant now) {
+  void restore(const journal::HandoverState& carried, pace::Instant now) {
     const auto learned = carried.paces().find(uri_);
-    if (learned != carried.paces().end()) rate_.carry_on(learned->second, now);
+    if (learned != carried.paces().end()) rate_.restore(learned->second, now);
     const auto last = carried.stamps().find(uri_);
     if (last != carried.stamps().end()) last_stamp_ = std::max(last_stamp_, last->second);
   }
@@ -79,9 +79,11 @@ class UriPace {
     keep();
   }
   /// The last request has arrived, and is not answered yet.
-  void on_departed(const uplink::Sent& sent) { rate_.on_departed({.first = sent.first, .last = sent.last}); }
+  void on_departed(const uplink::SendTimes& sent) {
+    rate_.on_departed({.first = sent.first, .last = sent.last});
+  }
   /// `sent`: when its bytes left.
-  void on_answered(const uplink::Sent& sent, pace::Instant now) {
+  void on_answered(const uplink::SendTimes& sent, pace::Instant now) {
     rate_.on_answered({.first = sent.first, .last = sent.last}, now);
     keep();
     backoff_.on_succeeded();
@@ -102,7 +104,7 @@ class UriPace {
   }
   void on_failed(const uplink::Outcome& outcome, pace::Instant now) {
     if (std::holds_alternative<uplink::NeverSent>(outcome)) {
-      rate_.not_sent();
+      rate_.on_not_sent();
       on_failed(now);
     } else {
       on_lost(now);
@@ -118,7 +120,7 @@ class UriPace {
   void forget_failures() { backoff_.on_succeeded(); }
 
   /// The cable is in again: no wait.
-  void link_is_back() {
+  void on_link_up() {
     backoff_.on_succeeded();
     retry_at_ = {};
   }
@@ -142,13 +144,13 @@ class ScoringPace {
   /// `random` and `journal` outlive this.
   ScoringPace(const settings::Rates& rates, std::mt19937_64& random, journal::Journal& journal);
 
-  void carry_on(const journal::Carried& carried, pace::Instant now);
+  void restore(const journal::HandoverState& carried, pace::Instant now);
   /// By the settings.
   void allow(const settings::Rates& rates, pace::Instant now);
-  void link_is_back();
-  void hold_back(pace::Instant now);
+  void on_link_up();
+  void assume_just_sent(pace::Instant now);
   /// The new Command Post may have two limits.
-  void endpoint_turned();
+  void on_new_command_post();
 
   bool has_one_limit() const { return has_one_limit_; }
   /// For the operator's test, which requests the status itself.
@@ -160,37 +162,37 @@ class ScoringPace {
   pace::Instant status_ready(bool decides) const;
 
   /// Call before the report leaves.
-  void report_sent(pace::Instant now);
-  void report_taken(const uplink::Sent& sent, pace::Instant now);
-  void report_throttled(const uplink::Sent& sent, std::optional<std::chrono::seconds> retry_after,
-                        pace::Instant now);
+  void on_report_sent(pace::Instant now);
+  void on_report_accepted(const uplink::SendTimes& sent, pace::Instant now);
+  void on_report_throttled(const uplink::SendTimes& sent, std::optional<std::chrono::seconds> retry_after,
+                           pace::Instant now);
   /// The answer rejects all reports for now.
-  void report_barred(const uplink::Sent& sent, pace::Instant now);
+  void on_report_barred(const uplink::SendTimes& sent, pace::Instant now);
   /// It did not leave, or the ledger failed.
-  void report_failed(pace::Instant now) { reports_.on_failed(now); }
-  void report_lost(pace::Instant now);
+  void on_report_failed(pace::Instant now) { reports_.on_failed(now); }
+  void on_report_lost(pace::Instant now);
 
   /// Call before the status leaves.
-  void status_sent(pace::Instant now);
-  void status_taken(const uplink::Sent& sent, pace::Instant now);
-  void status_throttled(const uplink::Sent& sent, std::optional<std::chrono::seconds> retry_after,
-                        pace::Instant now);
-  void status_failed(const uplink::Outcome& outcome, pace::Instant now);
-  void status_lost(pace::Instant now);
+  void on_status_sent(pace::Instant now);
+  void on_status_accepted(const uplink::SendTimes& sent, pace::Instant now);
+  void on_status_throttled(const uplink::SendTimes& sent, std::optional<std::chrono::seconds> retry_after,
+                           pace::Instant now);
+  void on_status_failed(const uplink::Outcome& outcome, pace::Instant now);
+  void on_status_lost(pace::Instant now);
 
  private:
-  struct Last {
+  struct LastRequest {
     pace::Instant left = pace::Instant::min();
     bool is_throttled = false;
   };
 
   /// `left`: when the request left. `other`: of the other kind. If it was throttled, this 429 does not show
   /// one limit.
-  void on_throttled(UriPace& its, pace::Instant left, const Last& other,
+  void on_throttled(UriPace& its, pace::Instant left, const LastRequest& other,
                     std::optional<std::chrono::seconds> retry_after, pace::Instant now);
 
   UriPace reports_, statuses_;
-  Last last_report_, last_status_;
+  LastRequest last_report_, last_status_;
   bool has_one_limit_ = false;  // over reports and statuses
 };
 

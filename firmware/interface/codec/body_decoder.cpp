@@ -19,26 +19,26 @@ constexpr std::string_view kBlanks = " \t";  // RFC 9110 5.6.3
 
 std::optional<Format> format_of(std::string_view content_type) {
   const std::string_view type = icd::trim(content_type.substr(0, content_type.find(';')), kBlanks);
-  if (icd::same_but_for_case(type, "application/json")) return Format::Json;
-  if (icd::same_but_for_case(type, "application/cbor")) return Format::Cbor;
+  if (icd::equals_ignoring_case(type, "application/json")) return Format::Json;
+  if (icd::equals_ignoring_case(type, "application/cbor")) return Format::Cbor;
   return std::nullopt;
 }
 
 std::optional<ContentCoding> coding_of(std::string_view content_encoding) {
   const std::string_view coding = icd::trim(content_encoding, kBlanks);
-  if (coding.empty() || icd::same_but_for_case(coding, "identity")) return ContentCoding::Identity;
-  if (icd::same_but_for_case(coding, "gzip") || icd::same_but_for_case(coding, "x-gzip"))
+  if (coding.empty() || icd::equals_ignoring_case(coding, "identity")) return ContentCoding::Identity;
+  if (icd::equals_ignoring_case(coding, "gzip") || icd::equals_ignoring_case(coding, "x-gzip"))
     return ContentCoding::Gzip;
-  if (icd::same_but_for_case(coding, "deflate")) return ContentCoding::Deflate;
+  if (icd::equals_ignoring_case(coding, "deflate")) return ContentCoding::Deflate;
   return std::nullopt;
 }
 
 namespace {
 
 std::unique_ptr<Splitter> splitter_for(Format format, Split split, const Limits& limits, BulkData& data) {
-  const Most most{.text = limits.text_bytes,
-                  .values = limits.values,
-                  .but = split == Split::MapData ? " without msg.data" : ""};
+  const DocumentLimits most{.text = limits.text_bytes,
+                            .values = limits.values,
+                            .but = split == Split::MapData ? " without msg.data" : ""};
   if (format == Format::Cbor) return std::make_unique<CborSplitter>(split, most, data);
   return std::make_unique<JsonSplitter>(split, most, data);
 }
@@ -114,7 +114,7 @@ std::size_t BodyDecoder::size() const {
   return impl_->content.decoded_bytes();
 }
 
-std::size_t BodyDecoder::data_held() const {
+std::size_t BodyDecoder::held_bytes() const {
   return impl_->data.available();
 }
 

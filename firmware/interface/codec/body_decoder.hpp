@@ -81,9 +81,9 @@ class BodyDecoder {
   icd::Checked<void> feed(std::span<const std::uint8_t> chunk);
   /// Inflated bytes of the document so far, with bulk data.
   std::size_t size() const;
-  /// data_held(): bytes of bulk data in the decoder. take_data() removes and returns them, for callers that
+  /// held_bytes(): bytes of bulk data in the decoder. take_data() removes and returns them, for callers that
   /// store data on arrival; finish() then returns the rest.
-  std::size_t data_held() const;
+  std::size_t held_bytes() const;
   icd::ChunkedBytes take_data();
   /// Call once, after the last feed().
   icd::Checked<Document> finish();

@@ -9,7 +9,7 @@
 
 namespace adit::codec {
 
-CborSplitter::CborSplitter(Split split, Most most, BulkData& data)
+CborSplitter::CborSplitter(Split split, DocumentLimits most, BulkData& data)
     : split_(split), data_(data), path_(split), rest_(most) {
   nests_.reserve(BodyDecoder::kDeepest);
 }
@@ -67,14 +67,14 @@ icd::Checked<void> CborSplitter::item() {
     path_.begin_key();
     path_.end_key();  // in case the key is not a string
   }
-  Into into = is_key ? Into::Key : Into::Rest;
+  Destination into = is_key ? Destination::Key : Destination::Rest;
   if (elements()) {
     if (auto taken = element(); !taken) return taken;
   } else if (path_.is_at_data() && head_.major() != Major::Tag && !leaves_out()) {
     if (auto diverted = divert(); !diverted) return diverted;
-    into = Into::Data;
+    into = Destination::Data;
   }
-  if (!elements() && into == Into::Rest) {
+  if (!elements() && into == Destination::Rest) {
     if (auto counted = count(); !counted) return counted;
   }
   switch (head_.major()) {
@@ -93,7 +93,7 @@ icd::Checked<void> CborSplitter::item() {
       break;
   }
   keep(head_.raw());
-  item_ended();
+  end_item();
   return {};
 }
 
@@ -106,7 +106,7 @@ icd::Checked<void> CborSplitter::simple() {
   constexpr std::uint8_t kFalse = 20;
   const bool assigned = head_.info() >= kFalse && head_.info() != 24;
   keep(assigned ? head_.raw() : "\xF7");
-  item_ended();
+  end_item();
   return {};
 }
 
@@ -141,7 +141,7 @@ icd::Checked<void> CborSplitter::nest(Major kind) {
   if (kind == Major::Tag || head_.indefinite() || head_.argument() > 0) return {};
   path_.close();
   nests_.pop_back();
-  item_ended();
+  end_item();
   return {};
 }
 
@@ -153,12 +153,12 @@ icd::Checked<void> CborSplitter::end_of_nest() {
   keep(head_.raw());
   path_.close();
   nests_.pop_back();
-  item_ended();
+  end_item();
   return {};
 }
 
 /// Ends an item, and each tag or container that it completes.
-void CborSplitter::item_ended() {
+void CborSplitter::end_item() {
   while (!nests_.empty()) {
     if (nests_.size() < elements_of_) elements_of_ = 0;
     if (nests_.size() < left_out_of_) left_out_of_ = 0;

@@ -20,7 +20,7 @@ namespace adit::codec {
 class CborSplitter final : public Splitter {
  public:
   /// `data` must outlive this object.
-  CborSplitter(Split split, Most most, BulkData& data);
+  CborSplitter(Split split, DocumentLimits most, BulkData& data);
 
   icd::Checked<void> feed(std::string_view bytes) override;
   icd::Checked<Value> finish() override;
@@ -33,11 +33,11 @@ class CborSplitter final : public Splitter {
     bool key_next = false;   // in a Map
   };
   /// Destination of a string's bytes.
-  enum class Into : std::uint8_t { Rest, Key, Data };
+  enum class Destination : std::uint8_t { Rest, Key, Data };
   struct String {
     Major kind = Major::Bytes;  // Bytes or Text
     bool chunked = false;       // its length is indefinite
-    Into into = Into::Rest;
+    Destination into = Destination::Rest;
   };
 
   /// These functions read a part of `in` (not empty) and return its length.
@@ -47,16 +47,16 @@ class CborSplitter final : public Splitter {
   icd::Checked<void> item();
   icd::Checked<void> count();
   icd::Checked<void> check_head() const;
-  icd::Checked<void> begin_string(Into into);
+  icd::Checked<void> begin_string(Destination into);
   icd::Checked<void> chunk_of_string();
   icd::Checked<void> begin_piece();
   icd::Checked<void> end_of_piece();
-  void string_ended();
+  void end_string();
   icd::Checked<void> tag();
   icd::Checked<void> nest(Major kind);
   icd::Checked<void> simple();
   icd::Checked<void> end_of_nest();
-  void item_ended();
+  void end_item();
 
   icd::Checked<void> divert();
   icd::Checked<void> element();

@@ -82,9 +82,9 @@ icd::Checked<std::size_t> CborSplitter::plain_elements(std::string_view in) {
   return in.size() - left.size();
 }
 
-icd::Checked<void> CborSplitter::begin_string(Into into) {
+icd::Checked<void> CborSplitter::begin_string(Destination into) {
   string_ = {.kind = head_.major(), .chunked = head_.indefinite(), .into = into};
-  if (into != Into::Data) keep(head_.raw());
+  if (into != Destination::Data) keep(head_.raw());
   return string_->chunked ? icd::Checked<void>{} : begin_piece();
 }
 
@@ -92,18 +92,18 @@ icd::Checked<void> CborSplitter::chunk_of_string() {
   if (!head_.is_break() && (head_.indefinite() || string_->kind != head_.major())) {
     return std::unexpected(fault("a string in chunks holds something else"));
   }
-  if (string_->into != Into::Data) {
+  if (string_->into != Destination::Data) {
     if (auto counted = count(); !counted) return counted;
     keep(head_.raw());
   }
   if (!head_.is_break()) return begin_piece();
-  string_ended();
+  end_string();
   return {};
 }
 
 icd::Checked<void> CborSplitter::begin_piece() {
   piece_left_ = head_.argument();
-  if (string_->into == Into::Data) {
+  if (string_->into == Destination::Data) {
     if (auto fit = data_.check_size(piece_left_); !fit) return fit;
   }
   return piece_left_ == 0 ? end_of_piece() : icd::Checked<void>{};
@@ -116,13 +116,13 @@ icd::Checked<std::size_t> CborSplitter::string(std::string_view in) {
       return std::unexpected(fault_at(at_ + *bad, "a text that is not UTF-8"));
     }
   }
-  if (string_->into == Into::Data) {
+  if (string_->into == Destination::Data) {
     ADIT_TRY(data_.append(bytes_of(run)));
   } else {
     keep(run);
   }
-  if (string_->into == Into::Rest) path_.text(run);
-  if (string_->into == Into::Key) path_.key_text(run);
+  if (string_->into == Destination::Rest) path_.text(run);
+  if (string_->into == Destination::Key) path_.key_text(run);
   piece_left_ -= run.size();
   if (piece_left_ == 0) {
     ADIT_TRY(end_of_piece());
@@ -133,14 +133,14 @@ icd::Checked<std::size_t> CborSplitter::string(std::string_view in) {
 icd::Checked<void> CborSplitter::end_of_piece() {
   // RFC 8949 3.2.3: a chunk must not split a character.
   if (!utf8_.complete()) return std::unexpected(fault("a text that ends within a character"));
-  if (!string_->chunked) string_ended();
+  if (!string_->chunked) end_string();
   return {};
 }
 
-void CborSplitter::string_ended() {
-  if (string_->into == Into::Key) path_.end_key();
+void CborSplitter::end_string() {
+  if (string_->into == Destination::Key) path_.end_key();
   string_.reset();
-  item_ended();
+  end_item();
 }
 
 }  // namespace adit::codec

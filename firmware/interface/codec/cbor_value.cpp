@@ -162,7 +162,7 @@ class CborReader {
         return object(head);
       case Major::Tag:
         value();  // null, from CborSplitter
-        return {Value::UnderTag{head.argument()}};
+        return {Value::TaggedValue{head.argument()}};
       case Major::Simple:
         break;
     }

@@ -34,7 +34,7 @@ std::optional<double> number_of(const Value& value) {
 }
 
 /// A value for a sentence: a number itself, otherwise its kind.
-std::string got_text(const Value& value) {
+std::string describe_value(const Value& value) {
   if (const auto* given = std::get_if<std::int64_t>(&value.is)) return std::to_string(*given);
   if (const auto* given = std::get_if<std::uint64_t>(&value.is)) return std::to_string(*given);
   if (const auto* given = std::get_if<double>(&value.is)) return icd::number_text(*given);
@@ -49,10 +49,10 @@ constexpr TimeNames kTimeNames[] = {{"secs", "nsecs"}, {"sec", "nanosec"}, {"sec
 constexpr std::string_view kTimes = "{secs, nsecs}, {sec, nanosec} or {sec, nsec}";
 
 /// A member that clients put in a wrong place, and its likely place beside the missing one.
-struct Misplaced {
+struct MisplacedMember {
   std::string_view missing, found, advice;
 };
-constexpr Misplaced kMisplaced[] = {
+constexpr MisplacedMember kMisplaced[] = {
     {"msg", "info", "put header, info and data into msg"},
     {"msg", "fields", "put header, fields, point_step and data into msg"},
     {"position", "pose", "put the pose's position and orientation here"},
@@ -167,7 +167,7 @@ std::int64_t Field::read_integer(std::int64_t least, std::int64_t most) const {
   }
   const auto given = integer_of(*value_);
   if (given && *given >= least && *given <= most) return *given;
-  refuse("expected a whole number from ", least, " to ", most, ", got ", got_text(*value_));
+  refuse("expected a whole number from ", least, " to ", most, ", got ", describe_value(*value_));
   return least;
 }
 
@@ -198,7 +198,7 @@ bool Field::truth() const {
   const auto given = value_ ? integer_of(*value_) : std::nullopt;
   if (given && (*given == 0 || *given == 1)) return *given == 1;
   if (value_ && number_of(*value_)) {
-    refuse("expected true or false, got ", got_text(*value_));
+    refuse("expected true or false, got ", describe_value(*value_));
   } else {
     refuse_kind("true or false");
   }

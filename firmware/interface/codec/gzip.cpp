@@ -186,12 +186,12 @@ icd::Checked<Gunzipped> gunzip(icd::ChunkedBytes bytes, std::size_t most, std::s
 
 namespace {
 
-struct Freed {
+struct Deleter {
   void operator()(std::uint8_t* memory) const { std::free(memory); }
   void operator()(libdeflate_compressor* compressor) const { libdeflate_free_compressor(compressor); }
   void operator()(libdeflate_decompressor* decompressor) const { libdeflate_free_decompressor(decompressor); }
 };
-using Memory = std::unique_ptr<std::uint8_t, Freed>;
+using Memory = std::unique_ptr<std::uint8_t, Deleter>;
 
 /// From malloc, so that the unused part returns to the system without a copy.
 Memory memory_of(std::size_t size) {
@@ -211,7 +211,7 @@ Memory cut_to(Memory memory, std::size_t size) {
 
 std::optional<icd::ChunkedBytes> gzip(std::span<const std::uint8_t> bytes, int level, std::size_t most) {
   icd::require(level >= kFastestLevel && level <= kSmallestLevel);
-  const std::unique_ptr<libdeflate_compressor, Freed> compressor(libdeflate_alloc_compressor(level));
+  const std::unique_ptr<libdeflate_compressor, Deleter> compressor(libdeflate_alloc_compressor(level));
   if (!compressor) throw std::bad_alloc();
   const std::size_t room = std::min(most, libdeflate_gzip_compress_bound(compressor.get(), bytes.size()));
   if (room == 0) return std::nullopt;
@@ -226,7 +226,7 @@ std::optional<icd::ChunkedBytes> gzip(std::span<const std::uint8_t> bytes, int l
 }
 
 std::optional<std::vector<std::uint8_t>> gunzip(const icd::ChunkedBytes& member, std::size_t size) {
-  const std::unique_ptr<libdeflate_decompressor, Freed> decompressor(libdeflate_alloc_decompressor());
+  const std::unique_ptr<libdeflate_decompressor, Deleter> decompressor(libdeflate_alloc_decompressor());
   if (!decompressor) throw std::bad_alloc();
   std::vector<std::uint8_t> together, bytes(size);
   if (member.chunks().size() > 1) together = member.to_vector();

@@ -103,7 +103,7 @@ struct Writer {
   void operator()(double value) const { text += json_number(value); }
   void operator()(const std::string& value) const { text += json_string(value); }
   void operator()(const Value::Bytes&) const { text += "null"; }
-  void operator()(Value::UnderTag) const { text += "null"; }
+  void operator()(Value::TaggedValue) const { text += "null"; }
   void operator()(Value::SplitOut) const { text += "null"; }
 
   void operator()(const Value::Array& array) const {

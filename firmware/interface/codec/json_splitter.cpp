@@ -58,7 +58,7 @@ std::expected<JsonString::Piece, Fault> JsonString::plain(std::string_view in) {
 
 std::expected<JsonString::Piece, Fault> JsonString::escape(std::string_view in) {
   for (std::size_t n = 0; n < in.size(); ++n) {
-    const auto ends = escape_ends_with(in[n]);
+    const auto ends = feed_escape(in[n]);
     if (!ends) return std::unexpected(Fault{n, ends.error()});
     if (!*ends) continue;
     finished_.swap(escape_);
@@ -68,7 +68,7 @@ std::expected<JsonString::Piece, Fault> JsonString::escape(std::string_view in) 
   return Piece{.taken = in.size(), .raw = {}, .text = {}};
 }
 
-std::expected<bool, const char*> JsonString::escape_ends_with(char c) {
+std::expected<bool, const char*> JsonString::feed_escape(char c) {
   const std::size_t place = escape_.size();
   escape_.push_back(c);
   if (place == 0) return false;  // the backslash
@@ -84,10 +84,10 @@ std::expected<bool, const char*> JsonString::escape_ends_with(char c) {
   if (place == 6) return c == '\\' ? std::expected<bool, const char*>(false) : std::unexpected(kLone);
   if (place == 7) return c == 'u' ? std::expected<bool, const char*>(false) : std::unexpected(kLone);
   if (!is_hex(c)) return std::unexpected("an escape \\u without four hex digits");
-  return place == 5 || place == 11 ? unicode_escape_ends() : false;
+  return place == 5 || place == 11 ? finish_unicode_escape() : false;
 }
 
-std::expected<bool, const char*> JsonString::unicode_escape_ends() {
+std::expected<bool, const char*> JsonString::finish_unicode_escape() {
   const char32_t first = unit(std::string_view(escape_).substr(2, 4));
   meaning_.clear();
   if (escape_.size() == 6) {
@@ -113,7 +113,7 @@ bool starts_number(char c) {
 
 }  // namespace
 
-JsonSplitter::JsonSplitter(Split split, Most most, BulkData& data)
+JsonSplitter::JsonSplitter(Split split, DocumentLimits most, BulkData& data)
     : split_(split), data_(data), path_(split), rest_(most) {}
 
 icd::Checked<void> JsonSplitter::feed(std::string_view bytes) {
@@ -143,7 +143,7 @@ icd::Checked<void> JsonSplitter::read(std::string_view bytes) {
 
 icd::Checked<void> JsonSplitter::end() {
   if (token_ == Token::Number) {
-    if (auto ended = number_ended(std::nullopt); !ended) return ended;
+    if (auto ended = finish_number(std::nullopt); !ended) return ended;
   }
   if (at_ == 0) return std::unexpected(fault("an empty document"));
   if (path_.depth() > 0 || token_ != Token::None || expect_ != Expect::Separator) {
@@ -189,7 +189,7 @@ icd::Checked<std::size_t> JsonSplitter::step(std::string_view in) {
 }
 
 icd::Checked<std::size_t> JsonSplitter::structure(std::string_view in) {
-  if (diverted_ == Diverted::Elements && expect_ != Expect::Separator) {
+  if (diverted_ == Diversion::Elements && expect_ != Expect::Separator) {
     if (auto taken = plain_elements(in); !taken || *taken > 0) return taken;
   }
   if (is_blank(in[0])) {
@@ -232,10 +232,10 @@ icd::Checked<std::size_t> JsonSplitter::separator(char c) {
 }
 
 icd::Checked<std::size_t> JsonSplitter::value(char first) {
-  if (path_.is_at_data() || diverted_ == Diverted::Elements) {
+  if (path_.is_at_data() || diverted_ == Diversion::Elements) {
     ADIT_TRY(divert(first));
   }
-  if (diverted_ == Diverted::No && !rest_.count()) return std::unexpected(rest_.too_many_values());
+  if (diverted_ == Diversion::No && !rest_.count()) return std::unexpected(rest_.too_many_values());
   if (starts_number(first)) {
     number_.grammar = {};
     number_.at = at_;
@@ -276,8 +276,8 @@ icd::Checked<std::size_t> JsonSplitter::open(char bracket) {
 icd::Checked<std::size_t> JsonSplitter::close(char bracket) {
   keep(bracket == '}' ? "}" : "]");
   path_.close();
-  diverted_ = Diverted::No;  // elements contain no brackets, so this one ends them
-  value_ended();
+  diverted_ = Diversion::No;  // elements contain no brackets, so this one ends them
+  end_value();
   return 1;
 }
 
@@ -291,18 +291,18 @@ icd::Checked<std::size_t> JsonSplitter::literal(std::string_view in) {
   if (in[0] != word_[0]) return std::unexpected(mismatch("true, false or null", in[0]));
   keep(word_.substr(0, 1));
   word_.remove_prefix(1);
-  if (word_.empty()) value_ended();
+  if (word_.empty()) end_value();
   return 1;
 }
 
 icd::Checked<std::size_t> JsonSplitter::string(std::string_view in) {
-  if (diverted_ == Diverted::Base64) {
+  if (diverted_ == Diversion::Base64) {
     if (auto taken = base64_groups(in); !taken || *taken > 0) return taken;
     in = in.substr(0, base64_.missing());  // up to the next whole group
   }
   const auto piece = string_.next(in);
   if (!piece) return std::unexpected(fault_at(at_ + piece.error().at, piece.error().what));
-  if (diverted_ == Diverted::Base64) {
+  if (diverted_ == Diversion::Base64) {
     ADIT_TRY(decode(piece->text));
   } else {
     keep(piece->raw);
@@ -310,19 +310,19 @@ icd::Checked<std::size_t> JsonSplitter::string(std::string_view in) {
   }
   if (token_ == Token::Key) path_.key_text(piece->text);
   if (piece->ended) {
-    ADIT_TRY(string_ended());
+    ADIT_TRY(finish_string());
   }
   return piece->taken;
 }
 
-icd::Checked<void> JsonSplitter::string_ended() {
-  if (diverted_ == Diverted::Base64) {
+icd::Checked<void> JsonSplitter::finish_string() {
+  if (diverted_ == Diversion::Base64) {
     std::array<std::uint8_t, 2> last{};
     const auto size = base64_.finish(last);
     if (!size) return std::unexpected(bad_data(size.error()));
     if (auto taken = data_.append(std::span(last).first(*size)); !taken) return taken;
-    diverted_ = Diverted::No;
-    value_ended();
+    diverted_ = Diversion::No;
+    end_value();
     return {};
   }
   keep("\"");
@@ -331,12 +331,12 @@ icd::Checked<void> JsonSplitter::string_ended() {
     token_ = Token::None;
     expect_ = Expect::Colon;
   } else {
-    value_ended();
+    end_value();
   }
   return {};
 }
 
-void JsonSplitter::value_ended() {
+void JsonSplitter::end_value() {
   token_ = Token::None;
   expect_ = Expect::Separator;
 }

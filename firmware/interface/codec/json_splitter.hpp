@@ -44,8 +44,8 @@ class JsonString {
   std::expected<Piece, Fault> plain(std::string_view in);
   std::expected<Piece, Fault> escape(std::string_view in);
   /// Whether `c` completes the escape.
-  std::expected<bool, const char*> escape_ends_with(char c);
-  std::expected<bool, const char*> unicode_escape_ends();
+  std::expected<bool, const char*> feed_escape(char c);
+  std::expected<bool, const char*> finish_unicode_escape();
 
   Utf8Checker utf8_;
   std::string escape_;    // the present escape so far; empty: none
@@ -59,7 +59,7 @@ class JsonString {
 class JsonSplitter final : public Splitter {
  public:
   /// `data` must outlive this object.
-  JsonSplitter(Split split, Most most, BulkData& data);
+  JsonSplitter(Split split, DocumentLimits most, BulkData& data);
 
   icd::Checked<void> feed(std::string_view bytes) override;
   icd::Checked<Value> finish() override;
@@ -67,9 +67,9 @@ class JsonSplitter final : public Splitter {
  private:
   enum class Expect : std::uint8_t { Value, FirstElement, FirstKey, Key, Colon, Separator };
   enum class Token : std::uint8_t { None, Key, String, Number, Literal };
-  enum class Diverted : std::uint8_t { No, Base64, Elements };
+  enum class Diversion : std::uint8_t { No, Base64, Elements };
   /// The first piece, if it is a whole document so far.
-  struct Whole {
+  struct WholeDocument {
     SharedText text;
     Value root;
   };
@@ -100,13 +100,13 @@ class JsonSplitter final : public Splitter {
   icd::Checked<void> decode(std::string_view base64);
   icd::Checked<std::size_t> base64_groups(std::string_view in);
   icd::Checked<std::size_t> plain_elements(std::string_view in);
-  icd::Checked<void> string_ended();
-  icd::Checked<void> number_ended(std::optional<char> next);
+  icd::Checked<void> finish_string();
+  icd::Checked<void> finish_number(std::optional<char> next);
   icd::Checked<void> keep_number();
   icd::Checked<void> divert_number();
-  void value_ended();
+  void end_value();
   void keep(std::string_view raw) {
-    if (diverted_ == Diverted::No) rest_.add(raw);
+    if (diverted_ == Diversion::No) rest_.add(raw);
   }
   bool is_in_object() const { return path_.depth() > 0 && objects_[path_.depth() - 1]; }
 
@@ -118,11 +118,11 @@ class JsonSplitter final : public Splitter {
   BulkData& data_;
   DataPath path_;
 
-  std::optional<Whole> whole_;
+  std::optional<WholeDocument> whole_;
 
   Expect expect_ = Expect::Value;
   Token token_ = Token::None;
-  Diverted diverted_ = Diverted::No;
+  Diversion diverted_ = Diversion::No;
   std::bitset<BodyDecoder::kDeepest> objects_;  // open brackets that are braces
   std::size_t at_ = 0;                          // bytes read so far
   std::size_t mark_ = 0;                        // size of the byte order mark

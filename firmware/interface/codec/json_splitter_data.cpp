@@ -9,7 +9,7 @@
 namespace adit::codec {
 
 icd::Checked<void> JsonSplitter::divert(char first) {
-  if (diverted_ == Diverted::Elements) {
+  if (diverted_ == Diversion::Elements) {
     const auto bad = [&](std::string_view got) { return std::unexpected(data_.bad_element(got)); };
     if (first == '"') return bad("a string");
     if (first == '{') return bad("an object");
@@ -21,7 +21,7 @@ icd::Checked<void> JsonSplitter::divert(char first) {
   if (auto only = data_.appear(); !only) return only;
   if (first == '"' || first == '[') {
     keep("null");
-    diverted_ = first == '"' ? Diverted::Base64 : Diverted::Elements;
+    diverted_ = first == '"' ? Diversion::Base64 : Diversion::Elements;
     data_.begin(first == '"' ? DataForm::Base64 : DataForm::Integers, path_.is_grid());
   }
   return {};
@@ -62,19 +62,19 @@ icd::Checked<std::size_t> JsonSplitter::number(std::string_view in) {
   const std::size_t taken = number_.grammar.next(in);
   number_.text += in.substr(0, taken);
   if (taken < in.size()) {
-    ADIT_TRY(number_ended(in[taken]));
+    ADIT_TRY(finish_number(in[taken]));
   }
   return taken;
 }
 
-icd::Checked<void> JsonSplitter::number_ended(std::optional<char> next) {
+icd::Checked<void> JsonSplitter::finish_number(std::optional<char> next) {
   if (!number_.grammar.complete()) return std::unexpected(fault_at(number_.at, "a number that is cut short"));
   if (number_.grammar.zero() && next && icd::is_digit(*next)) {
     return std::unexpected(fault_at(number_.at, "a number with a leading zero"));
   }
-  if (auto taken = diverted_ == Diverted::No ? keep_number() : divert_number(); !taken) return taken;
+  if (auto taken = diverted_ == Diversion::No ? keep_number() : divert_number(); !taken) return taken;
   number_.text.clear();
-  value_ended();
+  end_value();
   return {};
 }
 

@@ -36,7 +36,7 @@ std::optional<icd::RobotName> read_robot_name(const Field& field, const icd::Rul
 // JSON and CBOR and writing CBOR use the description.
 
 /// Whether a member may be absent. An absent one has the struct's default.
-enum class Need : std::uint8_t {
+enum class Presence : std::uint8_t {
   Always,
   MayLack,  // optional, always written
   IfSaid,   // optional, written only if it differs from the default
@@ -65,7 +65,7 @@ struct NamedMember {
 
   std::string_view name;
   T Struct::* at;
-  Need need = Need::Always;
+  Presence need = Presence::Always;
   Bound least = Limits::has_infinity ? -Limits::infinity() : Limits::lowest();  // of a number
   Bound most = Limits::has_infinity ? Limits::infinity() : Limits::max();       // value of a number, count or
                                                                                 // length
@@ -79,7 +79,7 @@ struct NamedMember {
     other.*which = value;
     return other;
   }
-  constexpr NamedMember needed(Need when) const { return with(&NamedMember::need, when); }
+  constexpr NamedMember needed(Presence when) const { return with(&NamedMember::need, when); }
   constexpr NamedMember from(Bound bound) const { return with(&NamedMember::least, bound); }
   constexpr NamedMember to(Bound bound, std::string_view of = "") const {
     return with(&NamedMember::most, bound).with(&NamedMember::unit, of);
@@ -95,7 +95,7 @@ struct NamedMember {
     if constexpr (requires { (from.*at).has_value(); })
       return (from.*at).has_value();
     else
-      return need != Need::IfSaid || from.*at != T();
+      return need != Presence::IfSaid || from.*at != T();
   }
   std::size_t count_written(const Struct& from) const { return is_written(from) ? 1 : 0; }
   void write(CborWriter& out, const Struct& from) const {
@@ -107,9 +107,9 @@ struct NamedMember {
  private:
   bool is_needed(const Struct& into) const {
     if constexpr (requires { into.action; }) {
-      if (need == Need::ToAdd) return into.action == icd::MarkerAction::Add;
+      if (need == Presence::ToAdd) return into.action == icd::MarkerAction::Add;
     }
-    return need == Need::Always;
+    return need == Presence::Always;
   }
 
   template <class Value>
@@ -291,7 +291,7 @@ struct TypeAndAction {
 
  private:
   static constexpr auto kType =
-      named("type", &icd::Marker::type).from(0).to(icd::kLastMarkerType).needed(Need::ToAdd);
+      named("type", &icd::Marker::type).from(0).to(icd::kLastMarkerType).needed(Presence::ToAdd);
 };
 
 template <>
@@ -328,30 +328,30 @@ inline constexpr auto members_of<icd::FieldSchema> =
 
 template <>
 inline constexpr auto members_of<icd::PointCloud2> =  // 6.3.2
-    std::tuple(HeaderMember{}, named("origin", &icd::PointCloud2::origin).needed(Need::MayLack),
+    std::tuple(HeaderMember{}, named("origin", &icd::PointCloud2::origin).needed(Presence::MayLack),
                named("fields", &icd::PointCloud2::fields).to(icd::kMostFields, " fields"),
-               named("is_bigendian", &icd::PointCloud2::is_bigendian).needed(Need::MayLack),
+               named("is_bigendian", &icd::PointCloud2::is_bigendian).needed(Presence::MayLack),
                named("point_step", &icd::PointCloud2::point_step).from(1).to(icd::kLargestPoint));
 
 template <>
 inline constexpr std::size_t kUnsent<icd::Marker> = 1;  // expires
 template <>
 inline constexpr auto members_of<icd::Marker> = std::tuple(  // 6.6
-    HeaderMember{}, named("ns", &icd::Marker::ns).needed(Need::MayLack),
-    named("id", &icd::Marker::id).needed(Need::MayLack), TypeAndAction{},
-    named("pose", &icd::Marker::pose).needed(Need::ToAdd),
-    named("scale", &icd::Marker::scale).needed(Need::ToAdd),
-    named("color", &icd::Marker::color).needed(Need::ToAdd),
-    named("lifetime", &icd::Marker::lifetime).time_to(icd::kLongestLifetime).needed(Need::MayLack),
-    named("text", &icd::Marker::text).needed(Need::MayLack),
+    HeaderMember{}, named("ns", &icd::Marker::ns).needed(Presence::MayLack),
+    named("id", &icd::Marker::id).needed(Presence::MayLack), TypeAndAction{},
+    named("pose", &icd::Marker::pose).needed(Presence::ToAdd),
+    named("scale", &icd::Marker::scale).needed(Presence::ToAdd),
+    named("color", &icd::Marker::color).needed(Presence::ToAdd),
+    named("lifetime", &icd::Marker::lifetime).time_to(icd::kLongestLifetime).needed(Presence::MayLack),
+    named("text", &icd::Marker::text).needed(Presence::MayLack),
     // ROS's further members of a Marker. The number of colors may differ from the number of points; viewers
     // then ignore the colors.
-    named("frame_locked", &icd::Marker::frame_locked).needed(Need::IfSaid),
-    named("points", &icd::Marker::points).to(icd::kMostMarkerPoints).needed(Need::IfSaid),
-    named("colors", &icd::Marker::colors).to(icd::kMostMarkerPoints).needed(Need::IfSaid),
+    named("frame_locked", &icd::Marker::frame_locked).needed(Presence::IfSaid),
+    named("points", &icd::Marker::points).to(icd::kMostMarkerPoints).needed(Presence::IfSaid),
+    named("colors", &icd::Marker::colors).to(icd::kMostMarkerPoints).needed(Presence::IfSaid),
     named("mesh_resource", &icd::Marker::mesh_resource)
         .to(icd::kLongestMeshResource, " bytes")
-        .needed(Need::IfSaid),
-    named("mesh_use_embedded_materials", &icd::Marker::mesh_use_embedded_materials).needed(Need::IfSaid));
+        .needed(Presence::IfSaid),
+    named("mesh_use_embedded_materials", &icd::Marker::mesh_use_embedded_materials).needed(Presence::IfSaid));
 
 }  // namespace adit::codec

@@ -249,8 +249,8 @@ std::optional<icd::RobotName> read_map_name(const Field& name, const icd::Rules&
 icd::Compression read_compression(const Field& field, DataForm form) {
   if (field.is_absent()) return icd::Compression::None;
   const std::string_view scheme = field.text();
-  if (icd::same_but_for_case(scheme, "none")) return icd::Compression::None;
-  if (!icd::same_but_for_case(scheme, "gzip"))
+  if (icd::equals_ignoring_case(scheme, "none")) return icd::Compression::None;
+  if (!icd::equals_ignoring_case(scheme, "gzip"))
     field.refuse("expected \"none\" or \"gzip\", got ", icd::quote_text(scheme));
   if (form == DataForm::Integers) field.refuse("expected \"none\" with data as an array, got \"gzip\"");
   return icd::Compression::Gzip;

@@ -14,7 +14,7 @@
 namespace adit::codec {
 
 /// Limits of a document without the map's data.
-struct Most {
+struct DocumentLimits {
   std::size_t text = 0;                                          // bytes
   std::size_t values = std::numeric_limits<std::size_t>::max();  // with pieces of strings, without names
   std::string_view but = "";                                     // " without msg.data", for a sentence
@@ -37,9 +37,9 @@ class Splitter {
 /// The document without the map's data, within its limits.
 class KeptText {
  public:
-  explicit KeptText(Most most) : most_(most) {}
+  explicit KeptText(DocumentLimits most) : most_(most) {}
 
-  const Most& most() const { return most_; }
+  const DocumentLimits& most() const { return most_; }
   void add(std::string_view raw) { text_ += raw; }
   void reserve(std::size_t bytes) { text_.reserve(bytes); }
   /// Counts a value. False: too_many_values().
@@ -54,7 +54,7 @@ class KeptText {
   std::string take_text() { return std::move(text_); }
 
  private:
-  const Most most_;
+  const DocumentLimits most_;
   std::size_t values_ = 0;
   std::string text_;
 };

@@ -12,7 +12,7 @@ std::string Value::kind() const {
       "null", "true or false",   "a whole number", "a whole number", "a number", "a string", "a byte string",
       "",     "split-out bytes", "an array",       "an object",      "an array"};
   static_assert(kKinds.size() == std::variant_size_v<decltype(is)>);
-  const auto* const under = std::get_if<UnderTag>(&is);
+  const auto* const under = std::get_if<TaggedValue>(&is);
   return under == nullptr ? kKinds[is.index()] : tag_that_changes(under->tag);
 }
 

@@ -26,9 +26,9 @@ struct Value {
   };
   /// Replaces a value under a CBOR tag that changes its meaning. The tag is an error only if the member is
   /// read.
-  struct UnderTag {
+  struct TaggedValue {
     std::uint64_t tag = 0;
-    friend bool operator==(UnderTag, UnderTag) = default;
+    friend bool operator==(TaggedValue, TaggedValue) = default;
   };
   /// Replaces the map's `data`, which is in Document::data.
   struct SplitOut {
@@ -38,7 +38,7 @@ struct Value {
   using Member = std::pair<std::string, Value>;  // CBOR keys that are not text are left out
   using Object = std::vector<Member>;
 
-  std::variant<std::nullptr_t, bool, std::int64_t, std::uint64_t, double, std::string, Bytes, UnderTag,
+  std::variant<std::nullptr_t, bool, std::int64_t, std::uint64_t, double, std::string, Bytes, TaggedValue,
                SplitOut, Array, Object,
                std::shared_ptr<const List>>  // an array left as text (Split::Lists)
       is = nullptr;

@@ -34,7 +34,7 @@ void append_escaped(std::string& out, char control) {
   }
 }
 
-bool stands_for_itself(char letter) {
+bool needs_no_escape(char letter) {
   return letter >= ' ' && letter <= '~' && letter != '"' && letter != '\\';
 }
 
@@ -56,7 +56,7 @@ std::string json_string(std::string_view text) {
   std::string out = "\"";
   while (!text.empty()) {
     const auto plain =
-        static_cast<std::size_t>(std::ranges::find_if_not(text, stands_for_itself) - text.begin());
+        static_cast<std::size_t>(std::ranges::find_if_not(text, needs_no_escape) - text.begin());
     out += text.substr(0, plain);
     text.remove_prefix(plain);
     if (text.empty()) break;

@@ -75,13 +75,13 @@ bool BearerToken::matches(std::string_view presented) const {
   return difference == 0;
 }
 
-bool BearerToken::may_be_in(std::string_view text) const {
+bool BearerToken::can_be_in(std::string_view text) const {
   // memmem() is fast enough for megabytes.
   return ::memmem(text.data(), text.size(), text_.data(), sought_) != nullptr;
 }
 
 void BearerToken::strike_from(std::string& text) const {
-  if (text_.size() < kShortest || !may_be_in(text)) return;
+  if (text_.size() < kShortest || !can_be_in(text)) return;
   strike_token(text, text_);
   if (text_.find_first_of("\"\\") != std::string::npos) {
     const std::string in_json = insert_before_letters(text_, "\"\\", '\\');
@@ -110,7 +110,7 @@ std::string_view token_in(std::string_view authorization) {
   constexpr std::string_view kScheme = "bearer";
   authorization = trim(authorization, kBlanks);
   if (authorization.size() <= kScheme.size() ||
-      !same_but_for_case(authorization.substr(0, kScheme.size()), kScheme))
+      !equals_ignoring_case(authorization.substr(0, kScheme.size()), kScheme))
     return {};
   authorization.remove_prefix(kScheme.size());
   if (kBlanks.find(authorization.front()) == std::string_view::npos) return {};
@@ -134,14 +134,14 @@ void Redaction::strike_from(std::string& text) const {
   for (const BearerToken& secret : secrets_) secret.strike_from(text);
 }
 
-bool Redaction::may_be_in(std::string_view text) const {
+bool Redaction::can_be_in(std::string_view text) const {
   return std::ranges::any_of(secrets_, [text](const BearerToken& secret) {
-    return secret.reveal().size() >= kShortest && secret.may_be_in(text);
+    return secret.reveal().size() >= kShortest && secret.can_be_in(text);
   });
 }
 
 void Redaction::strike_from_strings(std::string& text) const {
-  if (!may_be_in(text)) return;
+  if (!can_be_in(text)) return;
   std::string struck;
   std::size_t done = 0;
   for (std::size_t at = 0; (at = text.find('"', at)) != std::string::npos;) {

@@ -34,7 +34,7 @@ class BearerToken {
   /// quote_text() has cut it. A token of less than 4 characters is no secret and stays.
   void strike_from(std::string& text) const;
   /// False if strike_from() cannot find anything in `text`. Faster than strike_from().
-  bool may_be_in(std::string_view text) const;
+  bool can_be_in(std::string_view text) const;
 
  private:
   explicit BearerToken(std::string text);
@@ -71,7 +71,7 @@ class Redaction {
   void strike_from_html(std::string& text) const { strike_long_from(text); }
 
  private:
-  bool may_be_in(std::string_view text) const;
+  bool can_be_in(std::string_view text) const;
   void strike_long_from(std::string& text) const;
 
   std::vector<BearerToken> secrets_;

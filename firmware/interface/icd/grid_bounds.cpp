@@ -41,7 +41,7 @@ double slack_of(double resolution) {
 }
 
 /// Bounds along other axes.
-struct Seen {
+struct AlignedBounds {
   Point low, high;
   double turn = 0;  // metres by which the turn moves a corner, if the middle stays
 };
@@ -76,7 +76,7 @@ Point translate(const Point& p, const Point& by, double times = 1) {
 }
 
 /// `box` along the axes of `axes`, from its origin.
-Seen seen_from(const Pose& axes, const GridBounds& box) {
+AlignedBounds relative_bounds(const Pose& axes, const GridBounds& box) {
   const Placement there{axes};
   const Matrix back = transpose(there.turn);
   const Point shift = rotate(back, translate(box.origin.position, there.shift, -1));
@@ -86,7 +86,7 @@ Seen seen_from(const Pose& axes, const GridBounds& box) {
   const Point half = {(box.high.x - box.low.x) / 2, (box.high.y - box.low.y) / 2,
                       (box.high.z - box.low.z) / 2};
   const Point middle = translate(rotate(turn, translate(box.low, half)), shift);
-  Seen seen{middle, middle, 0};
+  AlignedBounds seen{middle, middle, 0};
   for (const double x : {-half.x, half.x}) {
     for (const double y : {-half.y, half.y}) {
       for (const double z : {-half.z, half.z}) {
@@ -102,8 +102,8 @@ Seen seen_from(const Pose& axes, const GridBounds& box) {
   return seen;
 }
 
-/// Whether the origin of `older` is certainly outside `newer`. Much cheaper than seen_from(), because each
-/// new grid is compared with each queued grid of its name.
+/// Whether the origin of `older` is certainly outside `newer`. Much cheaper than relative_bounds(), because
+/// each new grid is compared with each queued grid of its name.
 bool is_far(const OccupancyGrid& newer, const Pose& older) {
   const Point between = translate(newer.origin.position, older.position, -1);
   const double most = (1.0 + newer.width + newer.height) * newer.resolution;
@@ -134,7 +134,7 @@ bool GridBounds::is_larger_than(const OccupancyGrid& grid) const {
 bool covers(const OccupancyGrid& newer, const GridBounds& older) {
   if (newer.resolution != older.resolution || is_far(newer, older.origin)) return false;
   const double slack = slack_of(newer.resolution);
-  const Seen seen = seen_from(newer.origin, older);
+  const AlignedBounds seen = relative_bounds(newer.origin, older);
   return is_within(seen.low.x, seen.high.x, newer.width * newer.resolution, slack) &&
          is_within(seen.low.y, seen.high.y, newer.height * newer.resolution, slack) &&
          is_within(seen.low.z, seen.high.z, 0, slack) && older.turned + seen.turn <= slack;
@@ -143,13 +143,13 @@ bool covers(const OccupancyGrid& newer, const GridBounds& older) {
 std::optional<PartOfGrid> covered_part(const GridBounds& newer, const OccupancyGrid& older) {
   if (newer.resolution != older.resolution) return {};
   const double slack = slack_of(older.resolution);
-  const Seen seen = seen_from(older.origin, newer);
+  const AlignedBounds seen = relative_bounds(older.origin, newer);
   if (!is_within(seen.low.z, seen.high.z, 0, slack) || !(seen.turn <= slack)) return {};
   return PartOfGrid{seen.low, seen.high};
 }
 
 GridBounds joint_bounds(const GridBounds& newer, const GridBounds& older) {
-  const Seen seen = seen_from(newer.origin, older);
+  const AlignedBounds seen = relative_bounds(newer.origin, older);
   GridBounds all = newer;
   all.low = {std::min(newer.low.x, seen.low.x), std::min(newer.low.y, seen.low.y),
              std::min(newer.low.z, seen.low.z)};

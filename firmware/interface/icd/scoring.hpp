@@ -20,7 +20,7 @@ inline constexpr auto kArtifactTypes = std::to_array<std::string_view>({
 /// The ICD's spelling of a type, or "" if it is unknown.
 constexpr std::string_view artifact_type(std::string_view text) {
   for (const std::string_view type : kArtifactTypes) {
-    if (same_but_for_case(type, text)) return type;
+    if (equals_ignoring_case(type, text)) return type;
   }
   return {};
 }

@@ -63,7 +63,7 @@ constexpr bool is_letter_or_digit(char letter) {
 }
 
 /// True if both are equal except for the case of ASCII letters.
-constexpr bool same_but_for_case(std::string_view one, std::string_view other) {
+constexpr bool equals_ignoring_case(std::string_view one, std::string_view other) {
   return std::ranges::equal(one, other, {}, lower, lower);
 }
 

@@ -24,7 +24,7 @@ Applier::Applier(loop::Loop& loop, const Options& options)
       options_(options),
       files_(options),
       file_(options.status + '/' + host::kStatusFile),
-      due_(loop.timer([this] { look(); })) {}
+      due_(loop.timer([this] { poll(); })) {}
 
 std::expected<void, std::string> Applier::start() {
   const auto before = file_.read_earlier<network::Status>();
@@ -33,7 +33,7 @@ std::expected<void, std::string> Applier::start() {
     status.team_interface = options_.team;
     status.command_post_interface = options_.command_post;
     status.trouble = settled.error();
-    (void)file_.tell(status);  // a failure is logged
+    (void)file_.write(status);  // a failure is logged
     return settled;
   }
   change_.emplace(files_, files_.confirmed_numbers());
@@ -41,23 +41,23 @@ std::expected<void, std::string> Applier::start() {
   change_->set_interfaces(options_.team, options_.command_post);
   // Or an earlier start found the change and could not make networkd read its files.
   const bool was_pending = before && before->pending && before->pending->wanted != files_.confirmed_numbers();
-  if (files_.found_a_change() || was_pending) {
+  if (files_.has_unconfirmed_change() || was_pending) {
     host::log(Level::Warning, "a change that was not confirmed was reverted");
     change_->on_interrupted();
   }
-  if (!tell()) return std::unexpected("cannot write the status");
+  if (!write_status()) return std::unexpected("cannot write the status");
   auto folder = ADIT_TRY(host::open_requests(options_.wanted));
   folder_ = std::move(folder);
   if (folder_) watch_folder();
   if (folder_ && (!before || !before->trouble.empty())) drop_requests();
-  look();
+  poll();
   return {};
 }
 
 void Applier::stop() {
   if (folder_) handle_word();
   change_->stop(loop_.now());
-  tell();
+  write_status();
   loop_.stop();
 }
 
@@ -73,15 +73,15 @@ void Applier::watch_folder() {
     char events[4096];
     while (read(notices_.get(), events, sizeof events) > 0) {
     }
-    look();
+    poll();
   });
 }
 
 /// Reads requests before tick(), so that a confirmation that came during slow work is still in time.
-void Applier::look() {
+void Applier::poll() {
   if (folder_) handle_requests();
   change_->tick(loop_.now());
-  tell();
+  write_status();
   if (folder_) handle_probe();
   run_after_requests();
 }
@@ -102,31 +102,31 @@ template <class Request>
 std::optional<Request> Applier::read_request(const char* name) {
   auto request = host::take_request<Request>(*folder_, name);
   if (request) return *std::move(request);
-  cannot_take(request.error());
+  on_stuck_request(request.error());
   return std::nullopt;
 }
 
 void Applier::remove(const char* name) {
-  if (const auto removed = folder_->remove(name); !removed) cannot_take(removed.error());
+  if (const auto removed = folder_->remove(name); !removed) on_stuck_request(removed.error());
 }
 
-void Applier::cannot_take(const std::string& why) {
+void Applier::on_stuck_request(const std::string& why) {
   is_stuck_ = true;
   host::log(Level::Error, "cannot take a request", {{"why", why}});
 }
 
 void Applier::handle_wanted() {
-  const auto wanted = read_request<network::Wanted>(network::kWantedFile);
+  const auto wanted = read_request<network::ChangeRequest>(network::kWantedFile);
   if (!wanted) return;
   host::log(Level::Notice, "change requested",
             {{"team", network::team_text(wanted->numbers)},
              {"command_post", network::command_post_text(wanted->numbers)}});
-  change_->want(*wanted, loop_.now());
+  change_->request_change(*wanted, loop_.now());
 }
 
 void Applier::handle_word() {
   if (const auto word = read_request<network::Decision>(network::kWordFile))
-    change_->hear(*word, loop_.now());
+    change_->decide(*word, loop_.now());
 }
 
 void Applier::handle_probe() {
@@ -147,7 +147,7 @@ bool Applier::handle_forget() {
 
 /// Returns true if the request is finished.
 bool Applier::forget(const std::string& text) {
-  if (const auto forget = codec::read_file<network::Forget>(text); !forget) {
+  if (const auto forget = codec::read_file<network::FactoryRequest>(text); !forget) {
     host::log_rejected_request(network::kForgetFile, forget.error());
     return true;
   }
@@ -169,7 +169,7 @@ void Applier::handle_endpoints() {
 }
 
 void Applier::answer_probe(const network::Probe& probe) {
-  network::Probed probed{.nonce = probe.nonce};
+  network::ProbeResult probed{.nonce = probe.nonce};
   std::vector<std::uint32_t> own;
   if (const auto all = host::own_addresses(options_.command_post); !all) {
     probed.trouble = all.error();
@@ -187,14 +187,14 @@ void Applier::answer_probe(const network::Probe& probe) {
       probed.own = (*claim)->own;
     }
   }
-  if (const auto sought = settings::ipv4_of(probe.sought)) seek(*sought, probed);
+  if (const auto sought = settings::ipv4_of(probe.sought)) find_address(*sought, probed);
   host::log_failure(Level::Error, "cannot write an answer",
                     host::write_file(options_.status + '/' + network::kProbedFile, codec::write_file(probed),
                                      host::kForAll));
 }
 
 /// Finds the interface on which a machine answers for an address.
-void Applier::seek(std::uint32_t address, network::Probed& probed) const {
+void Applier::find_address(std::uint32_t address, network::ProbeResult& probed) const {
   for (const std::string& interface : {options_.command_post, options_.team}) {
     const auto claim = applier::probe(interface, {address});
     if (!claim) {
@@ -207,13 +207,13 @@ void Applier::seek(std::uint32_t address, network::Probed& probed) const {
 }
 
 /// Writes the status if it has changed. False: cannot write.
-bool Applier::tell() {
+bool Applier::write_status() {
   const network::Status& status = change_->status();
-  const auto told = file_.tell(status);
+  const auto told = file_.write(status);
   if (!told || !*told) return told.has_value();
   if (status.pending) {
     host::log(Level::Notice, "change applied: confirm it");
-  } else if (status.ended != network::Ended::NotYet) {
+  } else if (status.ended != network::ChangeOutcome::NotYet) {
     host::log(Level::Notice, "change ended",
               {{"how", std::string(name_of(status.ended))}, {"why", status.why}});
   }

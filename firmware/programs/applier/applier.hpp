@@ -31,7 +31,7 @@ class Applier {
   bool is_done() const { return !is_stuck_ && !files_.reload_is_due(); }
 
  private:
-  void look();
+  void poll();
   void drop_requests();
   void handle_requests();
   void handle_wanted();
@@ -41,14 +41,14 @@ class Applier {
   bool handle_forget();
   bool forget(const std::string& text);
   void run_after_requests();
-  bool tell();
+  bool write_status();
   void answer_probe(const network::Probe& probe);
-  void seek(std::uint32_t address, network::Probed& probed) const;
+  void find_address(std::uint32_t address, network::ProbeResult& probed) const;
   /// Reads and removes the request in a file. std::nullopt: no valid request.
   template <class Request>
   std::optional<Request> read_request(const char* name);
   void remove(const char* name);
-  void cannot_take(const std::string& why);
+  void on_stuck_request(const std::string& why);
   void watch_folder();
 
   loop::Loop& loop_;

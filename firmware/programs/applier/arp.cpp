@@ -201,7 +201,8 @@ std::string own_interface(const std::string& mac) {
 using Addresses = std::vector<std::uint32_t>;
 
 /// The first claim before `until`.
-std::optional<Claim> hear(const ArpSocket& arp, const Addresses& addresses, Clock::time_point until) {
+std::optional<Claim> receive_claim(const ArpSocket& arp, const Addresses& addresses,
+                                   Clock::time_point until) {
   while (true) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
     pollfd ready{arp.descriptor(), POLLIN, 0};
@@ -229,7 +230,7 @@ std::expected<std::optional<Claim>, std::string> probe(const std::string& interf
       ADIT_TRY(arp.ask(address));
     }
     const auto wait = i + 1 < kProbes ? kBetweenProbes : kAfterProbes;
-    if (auto claim = hear(arp, addresses, Clock::now() + wait)) return claim;
+    if (auto claim = receive_claim(arp, addresses, Clock::now() + wait)) return claim;
   }
   return std::nullopt;
 }

@@ -72,19 +72,19 @@ std::expected<void, std::string> Certificates::work() {
         status_.nonce = request.nonce;
         status_.refusal = done ? "" : done.error();
         host::log_failure(Level::Warning, "certificate rejected", done);
-        host::log_failure(Level::Error, "cannot write the status", tell());
+        host::log_failure(Level::Error, "cannot write the status", write_status());
       }));
-  return tell();
+  return write_status();
 }
 
 std::expected<void, std::string> Certificates::answer(const CertificateRequest& request,
                                                       host::UntrustedFolder& folder) {
-  using enum CertificateRequest::What;
+  using enum CertificateRequest::Command;
   if (request.what == Take) {
     auto uploaded = folder.take_file(access::kUploadedFile);
     if (!uploaded) return std::unexpected(std::move(uploaded.error().why));
     if (!*uploaded) return std::unexpected("the uploaded file is gone: try again");
-    return take(**uploaded);
+    return replace(**uploaded);
   }
   if (request.what == Make) return make(request.address);
   const auto kept = ADIT_TRY(host::read_optional_file(certificate()));
@@ -111,7 +111,7 @@ std::expected<void, std::string> Certificates::make(const std::string& address) 
   return {};
 }
 
-std::expected<void, std::string> Certificates::take(const std::string& text) const {
+std::expected<void, std::string> Certificates::replace(const std::string& text) const {
   const auto pem = ADIT_TRY(access::read_pem(text));
   ADIT_TRY(check(pem));
   ADIT_TRY(keep(pem.text()));
@@ -163,7 +163,7 @@ std::expected<void, std::string> Certificates::keep(const std::string& text) con
   return host::write_file(certificate(), text, host::kOursAlone);
 }
 
-std::expected<void, std::string> Certificates::tell() {
+std::expected<void, std::string> Certificates::write_status() {
   const std::string before = std::exchange(status_.fingerprint, "");
   const auto kept = host::read_optional_file(certificate());
   if (!kept && status_.refusal.empty()) status_.refusal = kept.error();
@@ -176,7 +176,7 @@ std::expected<void, std::string> Certificates::tell() {
     if (pem && until) status_.until = day_in(*until);
     ADIT_TRY(host::write_file(options_.status + '/' + kRestartFile, "", host::kOursAlone));
   }
-  (void)ADIT_TRY(file_.tell(status_));
+  (void)ADIT_TRY(file_.write(status_));
   return {};
 }
 

@@ -28,12 +28,12 @@ class Certificates {
   std::expected<void, std::string> answer(const access::CertificateRequest& request,
                                           host::UntrustedFolder& folder);
   std::expected<void, std::string> make(const std::string& address) const;
-  std::expected<void, std::string> take(const std::string& text) const;
+  std::expected<void, std::string> replace(const std::string& text) const;
   /// Whether OpenSSL and so the TLS server can use them. Error: a sentence without a part of the key.
   std::expected<void, std::string> check(const access::KeyAndChain& pem) const;
   std::expected<std::string, std::string> ask_openssl(std::vector<std::string> words) const;
   std::expected<void, std::string> keep(const std::string& text) const;
-  std::expected<void, std::string> tell();
+  std::expected<void, std::string> write_status();
   std::string certificate() const { return options_.state + '/' + access::kCertificateFile; }
 
   const CertificateOptions& options_;

@@ -72,7 +72,7 @@ std::string Chronyd::start(const clock::Chrony& chrony) const {
 }
 
 std::string Chronyd::stop() const {
-  if (!host::may_exist(path(clock::kConfigurationFile))) return "";
+  if (!host::can_exist(path(clock::kConfigurationFile))) return "";
   const auto stopped = host::run_command({systemctl_, "stop", kUnit}, kUnitAnswer);
   if (!stopped) return "cannot stop chronyd: " + stopped.error();
   host::log(Level::Notice, "NTP is off");
@@ -87,7 +87,7 @@ std::expected<void, std::string> ClockSetter::work() {
     status_.source = clock::Source::Chip;
   }
   status_.boot = clocks_.boot;
-  (void)ADIT_TRY(file_.tell(status_));
+  (void)ADIT_TRY(file_.write(status_));
   auto folder = ADIT_TRY(host::open_requests(options_.wanted));
   while (folder) {
     const auto ntp = ADIT_TRY(host::take_request<clock::Ntp>(*folder, clock::kNtpFile));
@@ -96,7 +96,7 @@ std::expected<void, std::string> ClockSetter::work() {
     if (time) answer(*time);
     if (!ntp && !time) break;
     status_.trouble = chronyd_.run_with(status_.ntp, status_.trusted_source());
-    (void)file_.tell(status_);
+    (void)file_.write(status_);
   }
   return {};
 }
@@ -105,7 +105,7 @@ void ClockSetter::answer(const clock::Request& request) {
   const double at = clocks_.monotonic(), before = clocks_.wall();
   const double time = request.time + (at - request.at);
   status_.nonce = request.nonce;
-  status_.refusal = clock::hindrance(request, at, status_);
+  status_.refusal = clock::refusal_reason(request, at, status_);
   if (status_.refusal.empty()) {
     const auto set = clocks_.set(time);
     status_.refusal = set ? "" : "cannot set the clock: " + set.error();

@@ -21,26 +21,27 @@ constexpr std::size_t kFirstAsks = ConflictDetector::kFirstGaps.size() + 1;
 void ConflictDetector::set_own(const std::vector<std::uint32_t>& addresses, std::vector<Mac> macs,
                                Instant now) {
   macs_ = std::move(macs);
-  std::vector<Own> next;
+  std::vector<WatchedAddress> next;
   for (const std::uint32_t address : addresses) {
     if (next.size() == kMost) break;
-    const auto known = std::ranges::find(own_, address, &Own::address);
-    next.push_back(known != own_.end() ? *known
-                                       : Own{.address = address, .first_asks = kFirstAsks, .ask_at = now});
+    const auto known = std::ranges::find(own_, address, &WatchedAddress::address);
+    next.push_back(known != own_.end()
+                       ? *known
+                       : WatchedAddress{.address = address, .first_asks = kFirstAsks, .ask_at = now});
   }
   own_ = std::move(next);
 }
 
 void ConflictDetector::restart_probing(Instant now) {
-  for (Own& own : own_) {
+  for (WatchedAddress& own : own_) {
     own.first_asks = kFirstAsks;
     own.ask_at = now;
   }
 }
 
-void ConflictDetector::hear(const ArpPacket& packet, Instant now) {
+void ConflictDetector::on_packet(const ArpPacket& packet, Instant now) {
   if (std::ranges::find(macs_, packet.sender) != macs_.end()) return;
-  for (Own& own : own_) {
+  for (WatchedAddress& own : own_) {
     if (packet.from == own.address) {
       note(own, packet.sender, now);
     } else if (packet.probes(own.address)) {
@@ -51,7 +52,7 @@ void ConflictDetector::hear(const ArpPacket& packet, Instant now) {
 }
 
 /// Of several machines, reports the first until it falls silent.
-void ConflictDetector::note(Own& own, const Mac& by, Instant now) {
+void ConflictDetector::note(WatchedAddress& own, const Mac& by, Instant now) {
   if (!own.taken || now >= own.by_seen + network::kTakenFor)
     own.taken = Conflict{.address = own.address, .by = by, .since = now};
   own.taken->seen = now;
@@ -59,14 +60,14 @@ void ConflictDetector::note(Own& own, const Mac& by, Instant now) {
   schedule_probe(own, now);
 }
 
-void ConflictDetector::schedule_probe(Own& own, Instant now) {
+void ConflictDetector::schedule_probe(WatchedAddress& own, Instant now) {
   const Instant soon = own.asked_at ? std::max(now, *own.asked_at + kBetween) : now;
   own.ask_at = own.ask_at ? std::min(*own.ask_at, soon) : soon;
 }
 
-std::vector<std::uint32_t> ConflictDetector::take_due(Instant now) {
+std::vector<std::uint32_t> ConflictDetector::pop_due(Instant now) {
   std::vector<std::uint32_t> due;
-  for (Own& own : own_) {
+  for (WatchedAddress& own : own_) {
     if (own.taken && now >= own.taken->seen + network::kTakenFor) own.taken.reset();
     if (!own.ask_at || now < *own.ask_at) continue;
     due.push_back(own.address);
@@ -82,7 +83,7 @@ std::vector<std::uint32_t> ConflictDetector::take_due(Instant now) {
 std::optional<ConflictDetector::Instant> ConflictDetector::wake() const {
   std::optional<Instant> first;
   const auto at = [&first](Instant when) { first = first ? std::min(*first, when) : when; };
-  for (const Own& own : own_) {
+  for (const WatchedAddress& own : own_) {
     if (own.ask_at) at(*own.ask_at);
     if (own.taken) at(own.taken->seen + network::kTakenFor);
   }
@@ -91,7 +92,7 @@ std::optional<ConflictDetector::Instant> ConflictDetector::wake() const {
 
 std::vector<ConflictDetector::Conflict> ConflictDetector::conflicts() const {
   std::vector<Conflict> all;
-  for (const Own& own : own_) {
+  for (const WatchedAddress& own : own_) {
     if (own.taken) all.push_back(*own.taken);
   }
   return all;
@@ -152,22 +153,22 @@ void SwappedCables::set_sought(const std::vector<std::uint32_t>& addresses, cons
                                Instant now) {
   at_team_.set_own(addresses, macs, now);
   macs_ = macs;
-  std::vector<AtPost> next;
+  std::vector<Sighting> next;
   for (const std::uint32_t address : addresses) {
-    const auto known = std::ranges::find(at_post_, address, &AtPost::address);
-    next.push_back(known != at_post_.end() ? *known : AtPost{.address = address});
+    const auto known = std::ranges::find(at_post_, address, &Sighting::address);
+    next.push_back(known != at_post_.end() ? *known : Sighting{.address = address});
   }
   at_post_ = std::move(next);
 }
 
-void SwappedCables::hear_at_post(const ArpPacket& packet, Instant now) {
+void SwappedCables::on_command_post_packet(const ArpPacket& packet, Instant now) {
   if (std::ranges::find(macs_, packet.sender) != macs_.end()) return;
-  const auto heard = std::ranges::find(at_post_, packet.from, &AtPost::address);
+  const auto heard = std::ranges::find(at_post_, packet.from, &Sighting::address);
   if (heard != at_post_.end()) heard->seen = now;
 }
 
-SwappedCables::Due SwappedCables::take_due(Instant now) {
-  Due due{.at_team = at_team_.take_due(now), .at_post = {}};
+SwappedCables::DueProbes SwappedCables::pop_due(Instant now) {
+  DueProbes due{.at_team = at_team_.pop_due(now), .at_post = {}};
   const auto taken = at_team_.conflicts();
   std::ranges::copy_if(due.at_team, std::back_inserter(due.at_post), [&taken](std::uint32_t address) {
     return std::ranges::find(taken, address, &ConflictDetector::Conflict::address) != taken.end();
@@ -178,7 +179,7 @@ SwappedCables::Due SwappedCables::take_due(Instant now) {
 std::vector<ConflictDetector::Conflict> SwappedCables::conflicts(Instant now) const {
   auto found = at_team_.conflicts();
   std::erase_if(found, [&](const ConflictDetector::Conflict& each) {
-    const auto at_post = std::ranges::find(at_post_, each.address, &AtPost::address);
+    const auto at_post = std::ranges::find(at_post_, each.address, &Sighting::address);
     const bool is_there =
         at_post != at_post_.end() && at_post->seen && now < *at_post->seen + network::kTakenFor;
     return is_there || each.seen < each.since + kSure;

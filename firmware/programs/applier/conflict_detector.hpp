@@ -42,26 +42,26 @@ class ConflictDetector {
   void set_own(const std::vector<std::uint32_t>& addresses, std::vector<Mac> macs, Instant now);
   /// Call when the cable is plugged in: the machine at its end may have an address.
   void restart_probing(Instant now);
-  void hear(const ArpPacket& packet, Instant now);
+  void on_packet(const ArpPacket& packet, Instant now);
   /// Addresses to ask for now, without duplicates. Ends conflicts not seen for network::kTakenFor.
-  std::vector<std::uint32_t> take_due(Instant now);
-  /// Time of the next take_due().
+  std::vector<std::uint32_t> pop_due(Instant now);
+  /// Time of the next pop_due().
   std::optional<Instant> wake() const;
 
   std::vector<Conflict> conflicts() const;
 
  private:
-  struct Own {
+  struct WatchedAddress {
     std::uint32_t address = 0;
     std::size_t first_asks = 0;  // first requests left
     std::optional<Instant> ask_at = {}, asked_at = {};
     std::optional<Conflict> taken = {};
     Instant by_seen{};  // last packet of taken->by
   };
-  static void note(Own& own, const Mac& by, Instant now);
-  static void schedule_probe(Own& own, Instant now);
+  static void note(WatchedAddress& own, const Mac& by, Instant now);
+  static void schedule_probe(WatchedAddress& own, Instant now);
 
-  std::vector<Own> own_;
+  std::vector<WatchedAddress> own_;
   std::vector<Mac> macs_;
 };
 
@@ -109,14 +109,14 @@ class SwappedCables {
   void set_sought(const std::vector<std::uint32_t>& addresses, const std::vector<Mac>& macs, Instant now);
   /// Call when the team's cable is plugged in, which may be the wrong one.
   void restart_probing(Instant now) { at_team_.restart_probing(now); }
-  void hear_at_team(const ArpPacket& packet, Instant now) { at_team_.hear(packet, now); }
-  void hear_at_post(const ArpPacket& packet, Instant now);
+  void on_team_packet(const ArpPacket& packet, Instant now) { at_team_.on_packet(packet, now); }
+  void on_command_post_packet(const ArpPacket& packet, Instant now);
 
   /// Addresses to ask for now.
-  struct Due {
+  struct DueProbes {
     std::vector<std::uint32_t> at_team, at_post;
   };
-  Due take_due(Instant now);
+  DueProbes pop_due(Instant now);
   std::optional<Instant> wake() const { return at_team_.wake(); }
 
   /// The Command Post's addresses seen at the team's port alone.
@@ -124,13 +124,13 @@ class SwappedCables {
 
  private:
   /// An address and its last sighting at its own port.
-  struct AtPost {
+  struct Sighting {
     std::uint32_t address = 0;
     std::optional<Instant> seen = {};
   };
 
   ConflictDetector at_team_;
-  std::vector<AtPost> at_post_;
+  std::vector<Sighting> at_post_;
   std::vector<Mac> macs_;
 };
 

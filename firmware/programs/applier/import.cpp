@@ -35,7 +35,7 @@ class Reader {
  public:
   Reader(const UntrustedFolder& card, const Settings& now) : card_(card), now_(now) {}
 
-  Found read() && {
+  CardResult read() && {
     read_names();
     read_settings();
     read_network();
@@ -161,12 +161,12 @@ class Reader {
 
   const UntrustedFolder& card_;
   const Settings& now_;
-  Found found_;
+  CardResult found_;
 };
 
 }  // namespace
 
-Found read_card(const UntrustedFolder& card, const Settings& now) {
+CardResult read_card(const UntrustedFolder& card, const Settings& now) {
   return Reader(card, now).read();
 }
 
@@ -185,7 +185,7 @@ Done give_to_owner(UntrustedFolder& folder, const std::string& path) {
       lchown(path.c_str(), owner.st_uid, owner.st_gid) == 0) {
     return {};
   }
-  return std::unexpected(host::trouble(path, errno));
+  return std::unexpected(host::path_error(path, errno));
 }
 
 /// Writes a file of aditd, which makes the copy of it. aditd owns the directory, so its path is not trusted.
@@ -203,14 +203,14 @@ std::expected<UntrustedFolder, std::string> open_state(const std::string& path) 
   std::filesystem::create_directories(parent.parent_path(), error);
   for (const std::string& folder : {parent.string(), path}) {
     if (mkdir(folder.c_str(), kFolderOfOurs) != 0 && errno != EEXIST) {
-      return std::unexpected(host::trouble(folder, errno));
+      return std::unexpected(host::path_error(folder, errno));
     }
   }
   return UntrustedFolder::open(path);
 }
 
 /// `lasting`: the state survives a boot.
-std::string said_of(const Found& found, bool lasting) {
+std::string result_text(const CardResult& found, bool lasting) {
   std::string text;
   if (!found.errors.empty()) {
     text = "Adit accepted no file. Correct these errors and restart Adit.\n";
@@ -236,13 +236,13 @@ std::string said_of(const Found& found, bool lasting) {
 }
 
 /// Writes only a changed text, because a card wears out.
-Done tell(UntrustedFolder& card, const std::string& text) {
+Done write_result(UntrustedFolder& card, const std::string& text) {
   const auto told = card.read(kTakenText);
   if (told && *told == text) return {};
   return host::write_file(card.path_by_descriptor() + '/' + kTakenText, text, host::kOursAlone);
 }
 
-void rename_taken(UntrustedFolder& folder, const std::string& name) {
+void rename_file(UntrustedFolder& folder, const std::string& name) {
   const std::string path = folder.path_by_descriptor() + '/' + name, taken = path + kTakenEnding;
   if (rename(path.c_str(), taken.c_str()) == 0) return;
   // If a directory has that name, removes it. Otherwise every start would accept the file again.
@@ -268,13 +268,13 @@ void wipe_taken(UntrustedFolder& card) {
 }
 
 /// Renames the settings last. Without them, the next start could not accept the remaining files unchanged.
-void leave(UntrustedFolder& card, const CardContents& brought) {
+void rename_accepted(UntrustedFolder& card, const CardContents& brought) {
   if (auto secrets = card.folder(kCardSecrets); secrets && *secrets) {
-    for (const auto& [file, token] : brought.tokens) rename_taken(**secrets, file);
+    for (const auto& [file, token] : brought.tokens) rename_file(**secrets, file);
   }
   wipe_taken(card);
-  if (brought.numbers) rename_taken(card, kCardNetwork);
-  if (brought.settings) rename_taken(card, kCardSettings);
+  if (brought.numbers) rename_file(card, kCardNetwork);
+  if (brought.settings) rename_file(card, kCardSettings);
   const loop::FileDescriptor folder(
       open(card.path_by_descriptor().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (!folder || syncfs(folder.get()) != 0) host::log(Level::Warning, "cannot sync the card");
@@ -292,25 +292,25 @@ Done Import::run() {
   const auto now = current_settings();
   if (!now) {
     const std::string why = "cannot read the settings in use: " + now.error();
-    (void)tell(*card, "Adit accepted no file, because it " + why + '\n');  // also logged
+    (void)write_result(*card, "Adit accepted no file, because it " + why + '\n');  // also logged
     return std::unexpected(why);
   }
-  const Found found = read_card(*card, *now);
+  const CardResult found = read_card(*card, *now);
   const bool lasting = ::access(options_.in_memory.c_str(), F_OK) != 0;
-  const std::string said = said_of(found, lasting);
+  const std::string said = result_text(found, lasting);
   if (said.empty()) return {};
   for (const std::string& error : found.errors)
     host::log(Level::Error, "file on the card rejected", {{"why", error}});
   // First, because every start would accept the files of a read-only card again.
-  if (auto told = tell(*card, said); !told) {
+  if (auto told = write_result(*card, said); !told) {
     return std::unexpected("cannot write to the card, so its files are ignored: " + told.error());
   }
   if (!found.errors.empty() || found.brought.nothing()) return {};
   if (auto saved = save(found.brought); !saved) {
-    (void)tell(*card, "Adit could not store these files: " + saved.error() + '\n');  // also logged
+    (void)write_result(*card, "Adit could not store these files: " + saved.error() + '\n');  // also logged
     return saved;
   }
-  if (lasting) leave(*card, found.brought);
+  if (lasting) rename_accepted(*card, found.brought);
   host::log(Level::Notice, "files from the card accepted",
             {{"settings", found.brought.settings ? "yes" : "no"},
              {"network", found.brought.numbers ? "yes" : "no"},
@@ -320,7 +320,7 @@ Done Import::run() {
 
 std::expected<settings::Settings, std::string> Import::current_settings() const {
   std::optional<std::string> text;
-  if (host::may_exist(options_.state)) {
+  if (host::can_exist(options_.state)) {
     const auto state = ADIT_TRY(UntrustedFolder::open(options_.state));
     text = ADIT_TRY(state.read(settings::kSavedFile));
   }
@@ -346,7 +346,7 @@ Done Import::save_tokens(UntrustedFolder& state, const CardContents& brought) {
   if (brought.tokens.empty()) return {};
   const std::string path = state.path_by_descriptor() + '/' + settings::kSecretsFolder;
   if (mkdir(path.c_str(), kFolderOfOurs) != 0 && errno != EEXIST) {
-    return std::unexpected(host::trouble(settings::kSecretsFolder, errno));
+    return std::unexpected(host::path_error(settings::kSecretsFolder, errno));
   }
   ADIT_TRY(give_to_owner(state, path));
   auto secrets = ADIT_TRY(state.folder(settings::kSecretsFolder));

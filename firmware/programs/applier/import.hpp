@@ -24,7 +24,7 @@ struct CardContents {
 };
 
 /// The result of reading a card.
-struct Found {
+struct CardResult {
   CardContents brought;
   std::vector<std::string> errors;      // "adit/settings.json: team.listen[0].port: ..."; if any, no file is
                                         // accepted
@@ -41,7 +41,7 @@ inline constexpr const char* kTakenEnding = ".taken";
 
 /// Reads `card`, the directory "adit". `now`: the settings in force, unless the card brings others. A file
 /// has at most UntrustedFolder::kLargest bytes. A byte order mark is removed.
-Found read_card(const host::UntrustedFolder& card, const settings::Settings& now);
+CardResult read_card(const host::UntrustedFolder& card, const settings::Settings& now);
 
 /// Imports the files on the boot partition into the box's state, all or none, and writes the result to
 /// taken.txt.

@@ -70,16 +70,16 @@ class AddressWatch {
   Side& team() { return sides_.front(); }
   Side& post() { return sides_.back(); }
   /// Reads addresses and interfaces. After an error, watches the last known addresses and tries again.
-  void look();
-  std::expected<void, std::string> try_to_look();
-  void look(Side& side, const std::vector<settings::Subnet>& own, const std::vector<Mac>& macs,
-            const std::vector<std::uint32_t>& sought);
+  void refresh();
+  std::expected<void, std::string> read_addresses();
+  void refresh(Side& side, const std::vector<settings::Subnet>& own, const std::vector<Mac>& macs,
+               const std::vector<std::uint32_t>& sought);
   void open(Side& side, unsigned index);
-  void hear(Side& side);
+  void read_packets(Side& side);
   void work();
   static void ask(const Side& side, const std::vector<std::uint32_t>& addresses);
-  static void say(Side& side, Instant now);
-  void tell(Instant now);
+  static void log_conflicts(Side& side, Instant now);
+  void write_status(Instant now);
   network::AddressConflicts conflicts(Instant now) const;
 
   loop::Loop& loop_;
@@ -115,30 +115,30 @@ network::AddressConflict row_of(const std::string& interface, const ConflictDete
 AddressWatch::AddressWatch(loop::Loop& loop, const Options& options)
     : loop_(loop),
       sides_{{{.interface = options.team}, {.interface = options.command_post}}},
-      told_(loop, options.told, [this] { look(); }),
+      told_(loop, options.told, [this] { refresh(); }),
       file_(options.status + '/' + network::kTakenFile),
       kernel_(host::link_and_address_changes()),
       due_(loop.timer([this] { work(); })),
-      again_(loop.timer([this] { look(); })) {}
+      again_(loop.timer([this] { refresh(); })) {}
 
 std::expected<void, std::string> AddressWatch::start() {
   if (!kernel_) return std::unexpected("cannot watch the interfaces for changes");
   changed_ = loop_.watch(kernel_.get(), EPOLLIN, [this](std::uint32_t) {
     if (!host::take_link_changes(kernel_)) changed_.wait_for(0);
-    look();
+    refresh();
   });
-  (void)ADIT_TRY(file_.tell(network::AddressConflicts{}));
-  look();
+  (void)ADIT_TRY(file_.write(network::AddressConflicts{}));
+  refresh();
   return {};
 }
 
-void AddressWatch::look() {
-  if (!host::log_failure(Level::Error, "cannot look for address conflicts", try_to_look()))
+void AddressWatch::refresh() {
+  if (!host::log_failure(Level::Error, "cannot look for address conflicts", read_addresses()))
     again_.call_at(loop_.now() + kLookAgain);
   work();
 }
 
-std::expected<void, std::string> AddressWatch::try_to_look() {
+std::expected<void, std::string> AddressWatch::read_addresses() {
   const auto at_team = ADIT_TRY(host::own_addresses(team().interface));
   const auto at_post = ADIT_TRY(host::own_addresses(post().interface));
   std::vector<Mac> macs;
@@ -147,13 +147,13 @@ std::expected<void, std::string> AddressWatch::try_to_look() {
   }
   const auto sought = sought_in(told_.read(), at_post, at_team);
   exchanged_.set_sought(sought, macs, loop_.now());
-  look(team(), at_team, macs, sought);
-  look(post(), at_post, macs, sought);
+  refresh(team(), at_team, macs, sought);
+  refresh(post(), at_post, macs, sought);
   return {};
 }
 
-void AddressWatch::look(Side& side, const std::vector<settings::Subnet>& own, const std::vector<Mac>& macs,
-                        const std::vector<std::uint32_t>& sought) {
+void AddressWatch::refresh(Side& side, const std::vector<settings::Subnet>& own, const std::vector<Mac>& macs,
+                           const std::vector<std::uint32_t>& sought) {
   const Instant now = loop_.now();
   const unsigned index = if_nametoindex(side.interface.c_str());
   const bool is_ours = side.arp && std::ranges::find(macs, side.arp->own()) != macs.end();
@@ -162,7 +162,7 @@ void AddressWatch::look(Side& side, const std::vector<settings::Subnet>& own, co
   side.takers.set_own(addresses, macs, now);
   addresses.insert(addresses.end(), sought.begin(), sought.end());
   if (side.arp) {
-    // hear() checks each packet anyway, so a missing filter only costs time.
+    // read_packets() checks each packet anyway, so a missing filter only costs time.
     host::log_failure(Level::Warning, "cannot filter ARP: reading all of it",
                       side.arp->filter_addresses(addresses));
   }
@@ -187,10 +187,11 @@ void AddressWatch::open(Side& side, unsigned index) {
   side.index = index;
   side.arp = std::move(*arp);
   side.rests_until.reset();
-  side.heard = loop_.watch(side.arp->descriptor(), EPOLLIN, [this, &side](std::uint32_t) { hear(side); });
+  side.heard =
+      loop_.watch(side.arp->descriptor(), EPOLLIN, [this, &side](std::uint32_t) { read_packets(side); });
 }
 
-void AddressWatch::hear(Side& side) {
+void AddressWatch::read_packets(Side& side) {
   const Instant now = loop_.now();
   std::uint8_t packet[128];
   for (int i = 0; i < kMostAtOnce; ++i) {
@@ -198,9 +199,9 @@ void AddressWatch::hear(Side& side) {
     if (!size) return work();
     const auto arp = read_arp({packet, *size});
     if (!arp) continue;
-    side.takers.hear(*arp, now);
-    if (&side == &team()) exchanged_.hear_at_team(*arp, now);
-    if (&side == &post()) exchanged_.hear_at_post(*arp, now);
+    side.takers.on_packet(*arp, now);
+    if (&side == &team()) exchanged_.on_team_packet(*arp, now);
+    if (&side == &post()) exchanged_.on_command_post_packet(*arp, now);
   }
   side.rests_until = now + kRest;
   side.heard.wait_for(0);
@@ -215,17 +216,17 @@ void AddressWatch::work() {
       side.rests_until.reset();
       side.heard.wait_for(EPOLLIN);
     }
-    ask(side, side.takers.take_due(now));
-    say(side, now);
+    ask(side, side.takers.pop_due(now));
+    log_conflicts(side, now);
   }
-  const SwappedCables::Due due = exchanged_.take_due(now);
+  const SwappedCables::DueProbes due = exchanged_.pop_due(now);
   ask(team(), due.at_team);
   ask(post(), due.at_post);
   std::optional<Instant> next;
   const auto at = [&next](const std::optional<Instant>& when) {
     if (when) next = std::min(*when, next.value_or(*when));
   };
-  tell(now);
+  write_status(now);
   if (written_at_) at(*written_at_ + kBetweenTellings);
   at(exchanged_.wake());
   for (const Side& side : sides_) {
@@ -238,13 +239,13 @@ void AddressWatch::work() {
 
 void AddressWatch::ask(const Side& side, const std::vector<std::uint32_t>& addresses) {
   for (const std::uint32_t address : addresses) {
-    if (!side.arp || !side.carrier) continue;  // look() asks again after the carrier returns
+    if (!side.arp || !side.carrier) continue;  // refresh() asks again after the carrier returns
     host::log_failure(Level::Debug, "cannot send an ARP request", side.arp->ask(address));
   }
 }
 
 /// Logs conflicts at most once per kBetweenLines, so that a machine cannot fill the log by coming and going.
-void AddressWatch::say(Side& side, Instant now) {
+void AddressWatch::log_conflicts(Side& side, Instant now) {
   const auto taken = side.takers.conflicts();
   const auto is_taken = [&taken](std::uint32_t address) {
     return std::ranges::find(taken, address, &ConflictDetector::Conflict::address) != taken.end();
@@ -263,10 +264,10 @@ void AddressWatch::say(Side& side, Instant now) {
              {"mac", text_of(taken.front().by)}});
 }
 
-void AddressWatch::tell(Instant now) {
+void AddressWatch::write_status(Instant now) {
   if (written_at_ && now < *written_at_ + kBetweenTellings) return;
   written_at_.reset();
-  const auto is_written = file_.tell(conflicts(now));
+  const auto is_written = file_.write(conflicts(now));
   if (!is_written || *is_written) written_at_ = now;
 }
 
@@ -286,7 +287,7 @@ network::AddressConflicts AddressWatch::conflicts(Instant now) const {
 
 namespace {
 
-bool is_well(const std::expected<void, std::string>& done) {
+bool log_if_failed(const std::expected<void, std::string>& done) {
   return adit::host::log_failure(adit::host::Level::Error, "cannot run", done);
 }
 
@@ -296,7 +297,7 @@ int watch(const adit::applier::Options& options) {
   adit::applier::AddressWatch watch(loop, options);
   const auto terminated = loop.signal(SIGTERM, [&loop] { loop.stop(); });
   const auto interrupted = loop.signal(SIGINT, [&loop] { loop.stop(); });
-  if (!is_well(watch.start())) return 1;
+  if (!log_if_failed(watch.start())) return 1;
   std::optional<adit::loop::Watchdog> watchdog;
   if (const auto within = adit::host::watchdog_interval())
     watchdog.emplace(loop, *within, &adit::host::notify_alive);
@@ -310,7 +311,7 @@ int run(const adit::applier::Options& options) {
   adit::applier::Applier applier(loop, options);
   const auto terminated = loop.signal(SIGTERM, [&applier] { applier.stop(); });
   const auto interrupted = loop.signal(SIGINT, [&applier] { applier.stop(); });
-  if (!is_well(applier.start())) return 1;
+  if (!log_if_failed(applier.start())) return 1;
   loop.run();
   return applier.is_done() ? 0 : 1;
 }
@@ -324,8 +325,8 @@ int main(int argc, char** argv) {
           adit::command_line::answer<adit::applier::Options>(command_line_of, ADIT_VERSION, options))
     return *exit;
   if (options->watch) return watch(*options);
-  if (options->ports) return is_well(adit::applier::write_port_rules(*options)) ? 0 : 1;
+  if (options->ports) return log_if_failed(adit::applier::write_port_rules(*options)) ? 0 : 1;
   if (!options->start) return run(*options);
   // Once at boot, before networkd.
-  return is_well(adit::applier::NetworkdFiles(*options).write_at_start()) ? 0 : 1;
+  return log_if_failed(adit::applier::NetworkdFiles(*options).write_at_start()) ? 0 : 1;
 }

@@ -26,7 +26,7 @@ std::expected<std::string, std::string> text_of(const std::string& path) {
 }  // namespace
 
 bool Reload::is_due() const {
-  return is_due_ || host::may_exist(file());
+  return is_due_ || host::can_exist(file());
 }
 
 void Reload::set_due() {
@@ -63,7 +63,7 @@ std::array<NetworkdFiles::Place, 2> NetworkdFiles::places(const network::Numbers
 
 std::expected<void, std::string> NetworkdFiles::settle() {
   if (auto read = this->read(); !read) return read;
-  if (auto written = write(Then::Reload); !written) return written;
+  if (auto written = write(FollowUp::Reload); !written) return written;
   return reload_.run();
 }
 
@@ -73,7 +73,7 @@ std::expected<void, std::string> NetworkdFiles::write_at_start() {
               {{"why", read.error()}});
     use_factory();
   }
-  return write(Then::Nothing);
+  return write(FollowUp::Nothing);
 }
 
 std::expected<void, std::string> NetworkdFiles::read() {
@@ -119,12 +119,12 @@ void NetworkdFiles::read_endpoints() {
   endpoints_ = endpoints && *endpoints ? **endpoints : network::Endpoints{};
 }
 
-std::expected<void, std::string> NetworkdFiles::write(Then then) {
+std::expected<void, std::string> NetworkdFiles::write(FollowUp then) {
   if (kept_) {
     if (auto written = write_kept(*kept_, then); !written) return written;
   }
   const auto removed = ADIT_TRY(remove_tried(then));
-  found_a_change_ = removed;
+  has_unconfirmed_change_ = removed;
   return {};
 }
 
@@ -134,7 +134,7 @@ std::expected<void, std::string> NetworkdFiles::set_aside(const std::string& why
   host::log(host::Level::Error, "the confirmed addresses are damaged: file set aside",
             {{"file", file}, {"why", why}});
   if (rename(file.c_str(), (file + ".damaged").c_str()) == 0) return {};
-  return std::unexpected(host::trouble(file, errno));
+  return std::unexpected(host::path_error(file, errno));
 }
 
 std::expected<void, std::string> NetworkdFiles::apply(const network::Numbers& numbers) {
@@ -148,7 +148,7 @@ std::expected<void, std::string> NetworkdFiles::apply(const network::Numbers& nu
   }
   tried_ = numbers;
   for (const Place& place : changes) {
-    if (auto written = put(place.tried, place.text, Then::Reload); !written) return written;
+    if (auto written = put(place.tried, place.text, FollowUp::Reload); !written) return written;
   }
   return reload_.run();
 }
@@ -183,12 +183,12 @@ std::expected<void, std::string> NetworkdFiles::keep(const network::Numbers& num
   tried_.reset();
   host::log_failure(host::Level::Error,
                     "addresses stored, but not written for networkd: retry at the next start",
-                    write_kept(numbers, Then::Nothing));
+                    write_kept(numbers, FollowUp::Nothing));
   return {};
 }
 
 std::expected<void, std::string> NetworkdFiles::revert() {
-  (void)ADIT_TRY(remove_tried(Then::Reload));
+  (void)ADIT_TRY(remove_tried(FollowUp::Reload));
   tried_.reset();
   return reload_.run();
 }
@@ -204,10 +204,10 @@ std::expected<std::optional<network::Numbers>, std::string> NetworkdFiles::forge
   reload_.set_due();
   for (const Place& place : places()) {
     if (!kept_ && unlink(place.kept.c_str()) != 0 && errno != ENOENT) {
-      return std::unexpected(host::trouble(place.kept, errno));
+      return std::unexpected(host::path_error(place.kept, errno));
     }
   }
-  ADIT_TRY(write(Then::Reload));
+  ADIT_TRY(write(FollowUp::Reload));
   ADIT_TRY(reload_.run());
   return kept_;
 }
@@ -218,18 +218,18 @@ std::expected<void, std::string> NetworkdFiles::lead_to(const network::Endpoints
     return kept;
   endpoints_ = endpoints;
   if (kept_) {
-    if (auto written = write_kept(*kept_, Then::Reload); !written) return written;
+    if (auto written = write_kept(*kept_, FollowUp::Reload); !written) return written;
   }
   const auto& in_use = tried_ ? tried_ : kept_;
   for (const Place& place : in_use ? places(*in_use) : std::array<Place, 2>{}) {
     const auto used = ADIT_TRY(current_text(place));
     if (used == place.text) continue;
-    if (auto written = put(place.tried, place.text, Then::Reload); !written) return written;
+    if (auto written = put(place.tried, place.text, FollowUp::Reload); !written) return written;
   }
   return reload_.run();
 }
 
-std::expected<void, std::string> NetworkdFiles::write_kept(const network::Numbers& numbers, Then then) {
+std::expected<void, std::string> NetworkdFiles::write_kept(const network::Numbers& numbers, FollowUp then) {
   for (const Place& place : places(numbers)) {
     if (const auto text = text_of(place.kept); text && *text == place.text) continue;
     if (auto written = put(place.kept, place.text, then); !written) return written;
@@ -238,19 +238,19 @@ std::expected<void, std::string> NetworkdFiles::write_kept(const network::Number
 }
 
 std::expected<void, std::string> NetworkdFiles::put(const std::string& file, const std::string& text,
-                                                    Then then) {
-  if (then == Then::Reload) reload_.set_due();
+                                                    FollowUp then) {
+  if (then == FollowUp::Reload) reload_.set_due();
   return host::write_file(file, text, host::kForAll);
 }
 
-std::expected<bool, std::string> NetworkdFiles::remove_tried(Then then) {
+std::expected<bool, std::string> NetworkdFiles::remove_tried(FollowUp then) {
   bool removed = false;
   for (const Place& place : kept_ ? places(*kept_) : places()) {
     const auto tried = host::slurp(place.tried);
     if (!tried && tried.error() == ENOENT) continue;
     if (tried && !place.text.empty() && tried->text == place.text) continue;  // equals the confirmed one
-    if (then == Then::Reload) reload_.set_due();
-    if (unlink(place.tried.c_str()) != 0) return std::unexpected(host::trouble(place.tried, errno));
+    if (then == FollowUp::Reload) reload_.set_due();
+    if (unlink(place.tried.c_str()) != 0) return std::unexpected(host::path_error(place.tried, errno));
     removed = true;
   }
   return removed;

@@ -54,7 +54,7 @@ class NetworkdFiles final : public network::NumbersSetter {
   const std::optional<network::Numbers>& confirmed_numbers() const { return kept_; }
   const network::Endpoints& endpoints() const { return endpoints_; }
   /// Whether settle() found an unconfirmed change.
-  bool found_a_change() const { return found_a_change_; }
+  bool has_unconfirmed_change() const { return has_unconfirmed_change_; }
   /// Whether networkd has still to read its files; settle() retries.
   bool reload_is_due() const { return reload_.is_due(); }
 
@@ -81,23 +81,23 @@ class NetworkdFiles final : public network::NumbersSetter {
   void read_endpoints();
   void use_factory();
   /// Action after a file changes. Nothing: networkd has the content already, or reads it when it starts.
-  enum class Then : std::uint8_t { Reload, Nothing };
-  std::expected<void, std::string> write(Then then);
+  enum class FollowUp : std::uint8_t { Reload, Nothing };
+  std::expected<void, std::string> write(FollowUp then);
   std::expected<void, std::string> set_aside(const std::string& why);
-  std::expected<void, std::string> write_kept(const network::Numbers& numbers, Then then);
-  std::expected<void, std::string> put(const std::string& file, const std::string& text, Then then);
+  std::expected<void, std::string> write_kept(const network::Numbers& numbers, FollowUp then);
+  std::expected<void, std::string> put(const std::string& file, const std::string& text, FollowUp then);
   /// The text that networkd uses for an interface; "" if there is none.
   static std::expected<std::string, std::string> current_text(const Place& place);
   std::expected<void, std::string> check_unused(const Place& place) const;
   /// Returns whether a file was removed.
-  std::expected<bool, std::string> remove_tried(Then then);
+  std::expected<bool, std::string> remove_tried(FollowUp then);
 
   const Options& options_;
   Prober probe_;
   Reload reload_;
   std::optional<network::Numbers> kept_, tried_;
   network::Endpoints endpoints_;
-  bool found_a_change_ = false;
+  bool has_unconfirmed_change_ = false;
 };
 
 }  // namespace adit::applier

@@ -27,7 +27,7 @@ std::expected<std::string, std::string> take_export(host::UntrustedFolder& folde
   auto bytes = read_export(folder.path_by_descriptor() + "/.", spare::kForStickFile);
   ADIT_TRY(folder.remove(spare::kForStickFile));
   if (!bytes) return bytes;
-  if (std::string why = spare::not_an_export(*bytes); !why.empty()) return std::unexpected(std::move(why));
+  if (std::string why = spare::export_error(*bytes); !why.empty()) return std::unexpected(std::move(why));
   return bytes;
 }
 
@@ -47,8 +47,8 @@ class SpareKeeper {
     if (!status_.doing.empty()) status_.refusal = "the last action was interrupted: try again";
     status_.doing.clear();
     sticks_.settle();
-    look();
-    if (!tell()) return std::unexpected("cannot write the status");
+    refresh();
+    if (!write_status()) return std::unexpected("cannot write the status");
     return host::answer_requests<spare::StickRequest>(
         {options_.wanted, spare::kStickRequestFile, spare::kForStickFile}, !before,
         [this](const spare::StickRequest& request, host::UntrustedFolder& folder) {
@@ -61,13 +61,13 @@ class SpareKeeper {
     status_.nonce = request.nonce;
     status_.refusal.clear();
     status_.written.clear();
-    status_.refusal = request.what == spare::StickRequest::What::Write
+    status_.refusal = request.what == spare::StickRequest::Command::Write
                           ? write(request.name, take_export(folder))
                           : import_export(request.name);
     status_.doing.clear();
     if (!status_.refusal.empty()) host::log(Level::Warning, "request rejected", {{"why", status_.refusal}});
-    look();  // the stick may have changed
-    tell();
+    refresh();  // the stick may have changed
+    write_status();
   }
 
   /// "", or why it failed.
@@ -117,17 +117,17 @@ class SpareKeeper {
     if (!folder) return folder.error();
     const auto bytes = read_export(*folder, name);
     if (!bytes) return bytes.error();
-    if (std::string why = spare::not_an_export(*bytes); !why.empty()) return why;
+    if (std::string why = spare::export_error(*bytes); !why.empty()) return why;
     const auto kept = host::write_file(options_.status + '/' + spare::kFromStickFile, *bytes, host::kForAll);
     return kept ? "" : kept.error();
   }
 
   void set_action(const char* what) {
     status_.doing = what;
-    tell();
+    write_status();
   }
 
-  void look() {
+  void refresh() {
     const auto media = sticks_.media();
     if (!media) {
       status_.hindrance = status_.unreadable = media.error();
@@ -139,7 +139,7 @@ class SpareKeeper {
     status_.exports = sticks_.exports(*media, status_.unreadable);
   }
 
-  bool tell() { return file_.tell(status_).has_value(); }
+  bool write_status() { return file_.write(status_).has_value(); }
 
   const SpareOptions& options_;
   Sticks sticks_;

@@ -31,7 +31,7 @@ FileDescriptor open_folder(const std::string& path) {
 }
 
 std::unexpected<std::string> stick_error(const std::string& name, int error) {
-  std::string why = host::trouble(name, error);
+  std::string why = host::path_error(name, error);
   if (error == ENOSPC || error == EDQUOT) why = "the stick is full";
   if (error == EROFS) why = "the stick is write-protected, or its file system is damaged";
   return std::unexpected(std::move(why));
@@ -148,7 +148,7 @@ std::expected<std::string, std::string> Sticks::folder_with(const std::string& n
     const std::string file = folder(medium.name) + '/' + name;
     struct stat status{};
     if (lstat(file.c_str(), &status) == 0) return folder(medium.name);
-    if (errno != ENOENT) why = host::trouble(file, errno);
+    if (errno != ENOENT) why = host::path_error(file, errno);
   }
   return std::unexpected(why);
 }

@@ -42,8 +42,8 @@ namespace {
 std::expected<update::LastUpdate, std::string> load_last_update(const std::string& folder);
 bool save(const std::string& folder, const update::LastUpdate& last_update);
 
-std::expected<update::Proven, std::string> load_proven(const std::string& folder);
-bool save(const std::string& folder, const update::Proven& proven);
+std::expected<update::ProvenSlot, std::string> load_proven(const std::string& folder);
+bool save(const std::string& folder, const update::ProvenSlot& proven);
 
 /// An update's file that other users cannot change during checks and installation.
 class BundleFile {
@@ -74,7 +74,7 @@ class Rauc {
 
   /// The board and the running slot, without the version. Blocks while RAUC is busy, because it gives no
   /// status then.
-  std::expected<update::Running, std::string> status() const;
+  std::expected<update::RunningSystem, std::string> status() const;
   std::expected<update::Bundle, std::string> info(const std::string& bundle) const;
   /// Writes the other slot and makes it the next to start. `progress`: per cent. After an error RAUC may
   /// still be at work.
@@ -105,18 +105,18 @@ class Updater {
   std::expected<void, std::string> work();
 
  private:
-  void find_out();
-  void look_at_sticks();
+  void read_status();
+  void scan_sticks();
   void answer(const update::Request& request, host::UntrustedFolder& folder);
   /// "", or why it failed.
   std::string install(const std::expected<BundleFile, std::string>& file, bool again);
   std::string abandon_spare_slot();
   std::string write(const BundleFile& file, const update::Bundle& bundle);
   std::string restart();
-  std::string go_back();
-  std::string stay();
-  void tell_of(update::LastUpdate last_update);
-  bool tell() { return file_.tell(status_).has_value(); }
+  std::string restart_proven_slot();
+  std::string keep_running_slot();
+  void record_update(update::LastUpdate last_update);
+  bool write_status() { return file_.write(status_).has_value(); }
 
   const UpdateOptions& options_;
   Rauc rauc_;
@@ -149,11 +149,11 @@ bool save(const std::string& folder, const update::LastUpdate& last_update) {
   return save(folder + '/' + update::kLastUpdateFile, codec::write_file(last_update), kLast);
 }
 
-std::expected<update::Proven, std::string> load_proven(const std::string& folder) {
-  return load<update::Proven>(folder + '/' + update::kProvenFile, kGood);
+std::expected<update::ProvenSlot, std::string> load_proven(const std::string& folder) {
+  return load<update::ProvenSlot>(folder + '/' + update::kProvenFile, kGood);
 }
 
-bool save(const std::string& folder, const update::Proven& proven) {
+bool save(const std::string& folder, const update::ProvenSlot& proven) {
   return save(folder + '/' + update::kProvenFile, codec::write_file(proven), kGood);
 }
 
@@ -161,7 +161,7 @@ std::expected<loop::FileDescriptor, std::string> open_plain(const std::string& p
                                                             const std::string& name) {
   loop::FileDescriptor file = loop::open_regular(path, O_RDONLY | O_NOFOLLOW);
   struct stat status{};
-  if (!file || fstat(file.get(), &status) != 0) return std::unexpected(host::trouble(name, errno));
+  if (!file || fstat(file.get(), &status) != 0) return std::unexpected(host::path_error(name, errno));
   if (status.st_size == 0) return std::unexpected(name + ": expected a bundle, got an empty file");
   if (std::cmp_greater(status.st_size, update::kLargestBundle)) {
     return std::unexpected(
@@ -172,12 +172,12 @@ std::expected<loop::FileDescriptor, std::string> open_plain(const std::string& p
 
 /// Gives the file to this user, so that no other user can open it. The kernel grants the lease only if no
 /// process has the file open for writing (fcntl(2)).
-std::expected<void, std::string> make_ours(const loop::FileDescriptor& file, const std::string& name) {
+std::expected<void, std::string> take_ownership(const loop::FileDescriptor& file, const std::string& name) {
   if (fchown(file.get(), geteuid(), getegid()) != 0 || fchmod(file.get(), S_IRUSR) != 0)
-    return std::unexpected(host::trouble(name, errno));
+    return std::unexpected(host::path_error(name, errno));
   if (fcntl(file.get(), F_SETLEASE, F_RDLCK) != 0) {
     return std::unexpected(errno == EAGAIN ? name + ": another program is writing to it"
-                                           : host::trouble(name, errno));
+                                           : host::path_error(name, errno));
   }
   fcntl(file.get(), F_SETLEASE, F_UNLCK);
   return {};
@@ -190,7 +190,7 @@ std::expected<BundleFile, std::string> BundleFile::take_file(host::UntrustedFold
   const auto gone = folder.remove(name);
   if (!file) return std::unexpected(file.error());
   if (!gone) return std::unexpected(gone.error());
-  ADIT_TRY(make_ours(*file, name));
+  ADIT_TRY(take_ownership(*file, name));
   return BundleFile(std::move(*file));
 }
 
@@ -239,7 +239,7 @@ std::string version_in(const std::string& path) {
   return value;
 }
 
-std::expected<update::Running, std::string> Rauc::status() const {
+std::expected<update::RunningSystem, std::string> Rauc::status() const {
   const auto until = std::chrono::steady_clock::now() + kInstall;
   const std::vector<std::string> words = {command_, "status", "--output-format=json"};
   auto said = ask(words);
@@ -289,7 +289,7 @@ std::expected<void, std::string> Rauc::disable_other_slot() const {
 }
 
 /// The best update on the mounted USB sticks.
-struct OnStick {
+struct StickUpdate {
   std::optional<update::Offer> offer;  // the newest installable one
   std::string path;                    // its file
   std::string trouble;                 // without an offer: why the files cannot be installed, or ""
@@ -326,20 +326,20 @@ std::vector<Candidate> candidates(const std::string& sticks, const std::string& 
 
 /// The update in a file, or why it cannot be installed.
 std::expected<update::Offer, std::string> checked_offer(const Candidate& candidate, const Rauc& rauc,
-                                                        const update::Running& running) {
+                                                        const update::RunningSystem& running) {
   if (!update::is_plain(candidate.name))
     return std::unexpected("rename the file: only ASCII characters are allowed");
   const auto file = ADIT_TRY(BundleFile::open(candidate.folder + '/' + candidate.name));
   const auto bundle = ADIT_TRY(rauc.info(file.path()));
-  if (std::string why = update::hindrance(bundle, running, true); !why.empty())
+  if (std::string why = update::refusal_reason(bundle, running, true); !why.empty())
     return std::unexpected(std::move(why));
   return update::Offer{candidate.name, bundle.version};
 }
 
 /// Checks files `adit-*.raucb` at the top of each stick, the eight with the most promising names. The sticks
 /// are mounted read-only in the directories of `folder`.
-OnStick look_at_sticks(const std::string& folder, const Rauc& rauc, const update::Running& running) {
-  OnStick found;
+StickUpdate find_update(const std::string& folder, const Rauc& rauc, const update::RunningSystem& running) {
+  StickUpdate found;
   for (const Candidate& candidate : candidates(folder, running.compatible, found.trouble)) {
     const auto offer = checked_offer(candidate, rauc, running);
     if (!offer) {
@@ -364,20 +364,20 @@ std::expected<void, std::string> Updater::work() {
   const auto before = file_.read_earlier<update::Status>();
   if (before) status_.nonce = before->nonce;
   boot_ = host::boot();
-  find_out();
-  look_at_sticks();
-  if (!tell()) return std::unexpected("cannot write the status");
+  read_status();
+  scan_sticks();
+  if (!write_status()) return std::unexpected("cannot write the status");
   auto done = host::answer_requests<update::Request>(
       {options_.wanted, update::kRequestFile, update::kBundleFile}, !before,
       [this](const update::Request& request, host::UntrustedFolder& folder) { answer(request, folder); });
   if (done) return done;
   status_.trouble = done.error();
-  tell();
+  write_status();
   return done;
 }
 
 /// Finds the running slot and settles the last update.
-void Updater::find_out() {
+void Updater::read_status() {
   const auto running = rauc_.status();
   if (running) {
     status_.running = *running;
@@ -396,43 +396,43 @@ void Updater::find_out() {
   if (last_update == kept) {
     status_.last = std::move(last_update);
   } else {
-    tell_of(std::move(last_update));
+    record_update(std::move(last_update));
   }
   status_.trial = update::on_trial(status_.last, status_.running, boot_);
   const auto proven = load_proven(options_.state);
-  status_.stray = proven ? update::stray(*proven, status_.running, status_.trial)
+  status_.stray = proven ? update::slot_warning(*proven, status_.running, status_.trial)
                          : update::stray_if_unknown(status_.running, status_.trial, proven.error());
   if (!status_.stray.empty()) host::log(Level::Error, "unexpected slot started", {{"what", status_.stray}});
 }
 
-void Updater::look_at_sticks() {
+void Updater::scan_sticks() {
   if (!status_.trouble.empty()) return;
-  OnStick found = applier::look_at_sticks(options_.sticks, rauc_, status_.running);
+  StickUpdate found = applier::find_update(options_.sticks, rauc_, status_.running);
   status_.stick = std::move(found.offer);
   on_stick_ = std::move(found.path);
   status_.stick_trouble = std::move(found.trouble);
 }
 
 void Updater::answer(const update::Request& request, host::UntrustedFolder& folder) {
-  using What = update::Request::What;
+  using Command = update::Request::Command;
   status_.nonce = request.nonce;
   status_.refusal.clear();
-  if (request.what == What::Install) {
+  if (request.what == Command::Install) {
     status_.refusal = install(BundleFile::take_file(folder, update::kBundleFile), request.again);
-  } else if (request.what == What::Restart) {
+  } else if (request.what == Command::Restart) {
     status_.refusal = restart();
-  } else if (request.what == What::Back) {
-    status_.refusal = go_back();
-  } else if (request.what == What::Stay) {
-    status_.refusal = stay();
+  } else if (request.what == Command::Back) {
+    status_.refusal = restart_proven_slot();
+  } else if (request.what == Command::Stay) {
+    status_.refusal = keep_running_slot();
   } else if (status_.stick) {
     status_.refusal = install(BundleFile::open(on_stick_), request.again);
   } else {
     status_.refusal = status_.stick_trouble.empty() ? "no stick has an update" : status_.stick_trouble;
   }
   if (!status_.refusal.empty()) host::log(Level::Warning, "request rejected", {{"why", status_.refusal}});
-  look_at_sticks();  // the stick may have changed
-  tell();
+  scan_sticks();  // the stick may have changed
+  write_status();
 }
 
 std::string Updater::install(const std::expected<BundleFile, std::string>& file, bool again) {
@@ -443,21 +443,21 @@ std::string Updater::install(const std::expected<BundleFile, std::string>& file,
   if (!hindrance) return hindrance.error();
   if (*hindrance) return (*hindrance)->substr(0, (*hindrance)->find('\n'));
   status_.doing = "checking";
-  tell();
+  write_status();
   const auto bundle = rauc_.info(file->path());
-  std::string why = bundle ? update::hindrance(*bundle, status_.running, again) : bundle.error();
+  std::string why = bundle ? update::refusal_reason(*bundle, status_.running, again) : bundle.error();
   if (why.empty()) why = write(*file, *bundle);
   status_.doing.clear();
   status_.progress.reset();
   return why;
 }
 
-/// Gives up the content of the slot to be written: go_back() is no longer possible, and it is not the next
-/// slot to start. If the slot is next afterwards, RAUC has written all of it.
+/// Gives up the content of the slot to be written: restart_proven_slot() is no longer possible, and it is not
+/// the next slot to start. If the slot is next afterwards, RAUC has written all of it.
 std::string Updater::abandon_spare_slot() {
   const auto proven = load_proven(options_.state);
   const bool may_be_other = !proven || proven->slot == status_.running.other;
-  if (may_be_other && !save(options_.state, update::Proven{})) return kNotKept;
+  if (may_be_other && !save(options_.state, update::ProvenSlot{})) return kNotKept;
   status_.stray.clear();
   const auto now = rauc_.status();
   if (!now) return now.error();
@@ -473,24 +473,24 @@ std::string Updater::write(const BundleFile& file, const update::Bundle& bundle)
   if (!save(options_.state, last_update)) return kNotKept;
   status_.doing = "installing";
   status_.progress = 0;
-  tell_of(last_update);
-  tell();
+  record_update(last_update);
+  write_status();
   const auto installed = rauc_.install(file.path(), [this](int percent) {
     status_.progress = percent;
-    tell();
+    write_status();
   });
   last_update.stage = installed ? Stage::Installed : Stage::Failed;
   last_update.why = installed ? "" : installed.error();
   if (!installed) {  // RAUC continues if its client died or took too long; status() waits for its end
     if (const auto ended = rauc_.status()) last_update = update::settle_update(last_update, *ended, boot_);
   }
-  tell_of(last_update);
+  record_update(last_update);
   return last_update.why;
 }
 
 std::string Updater::restart() {
   status_.doing = "restarting";
-  tell();
+  write_status();
   host::log(Level::Notice, "restarting the machine");
   const auto restarted = host::run_command({options_.systemctl, "reboot"}, kRestart);
   if (restarted) return "";
@@ -498,21 +498,22 @@ std::string Updater::restart() {
   return "cannot restart the machine: " + restarted.error();
 }
 
-std::string Updater::go_back() {
+std::string Updater::restart_proven_slot() {
   if (status_.stray.empty()) return std::string(update::kNoStray);
   if (const auto chosen = rauc_.start_other_next(); !chosen) return chosen.error();
   return restart();
 }
 
-std::string Updater::stay() {
+std::string Updater::keep_running_slot() {
   if (status_.stray.empty()) return std::string(update::kNoStray);
-  if (!save(options_.state, update::Proven{status_.running.slot, status_.running.version})) return kNotKept;
+  if (!save(options_.state, update::ProvenSlot{status_.running.slot, status_.running.version}))
+    return kNotKept;
   host::log(Level::Notice, "the running slot is to stay", {{"slot", status_.running.slot}});
   status_.stray.clear();
   return "";
 }
 
-void Updater::tell_of(update::LastUpdate last_update) {
+void Updater::record_update(update::LastUpdate last_update) {
   host::log(
       last_update.stage == Stage::Left || last_update.stage == Stage::Failed ? Level::Error : Level::Notice,
       "an update",
@@ -551,10 +552,10 @@ std::expected<void, std::string> restart(const std::string& systemctl) {
 
 /// A failure to store this does not change the slot's state: a later start stores it. Only a trial or the
 /// operator replaces an unreadable record.
-void keep_proven(const UpdateOptions& options, const update::Running& running, bool trial) {
+void keep_proven(const UpdateOptions& options, const update::RunningSystem& running, bool trial) {
   const auto before = load_proven(options.state);
   if (!before && !trial) return;  // adit-update reports it
-  const update::Proven proven = update::proven_now(before.value_or(update::Proven{}), running, trial);
+  const update::ProvenSlot proven = update::proven_now(before.value_or(update::ProvenSlot{}), running, trial);
   if (!before || proven != *before) save(options.state, proven);
 }
 

@@ -80,7 +80,7 @@ std::expected<loop::FileDescriptor, std::string> connect_to(const uplink::Endpoi
   return *std::move(fd);
 }
 
-std::string cannot_reach(const settings::Address& address, const std::string& why) {
+std::string unreachable_text(const settings::Address& address, const std::string& why) {
   return "cannot reach Adit at " + to_text(address) + ": " + why;
 }
 
@@ -108,10 +108,10 @@ std::expected<HttpReply, NoReply> http_ask(const settings::Address& address, con
   const auto deadline = Clock::now() + within;
   const uplink::Endpoint endpoint = endpoint_of(address);
   const auto fd = connect_to(endpoint, deadline);
-  if (!fd) return std::unexpected(NoReply{cannot_reach(address, fd.error()), false});
+  if (!fd) return std::unexpected(NoReply{unreachable_text(address, fd.error()), false});
   uplink::Exchange exchange(endpoint, token, std::move(request));
   auto reply = run_exchange(fd->get(), exchange, deadline);
-  if (!reply) return std::unexpected(NoReply{cannot_reach(address, reply.error()), true});
+  if (!reply) return std::unexpected(NoReply{unreachable_text(address, reply.error()), true});
   return std::move(*reply);
 }
 
@@ -122,13 +122,13 @@ std::expected<std::unique_ptr<HttpStream>, std::string> HttpStream::ask(const se
   const auto deadline = Clock::now() + within;
   const uplink::Endpoint endpoint = endpoint_of(address);
   auto fd = connect_to(endpoint, deadline);
-  if (!fd) return std::unexpected(cannot_reach(address, fd.error()));
+  if (!fd) return std::unexpected(unreachable_text(address, fd.error()));
   auto stream = std::make_unique<HttpStream>(*std::move(fd), endpoint, token, std::move(request));
   while (stream->exchange_.wants_to_write()) {
     if (stream->exchange_.write(stream->fd()) != 0) break;  // read() returns the reason
     if (!stream->exchange_.wants_to_write()) break;
     if (const int error = wait_for(stream->fd(), POLLOUT, deadline); error != 0) {
-      return std::unexpected(cannot_reach(address, reason(error)));
+      return std::unexpected(unreachable_text(address, reason(error)));
     }
   }
   return stream;
@@ -138,14 +138,14 @@ HttpStream::HttpStream(loop::FileDescriptor fd, const uplink::Endpoint& endpoint
                        const icd::BearerToken& token, uplink::Request request)
     : fd_(std::move(fd)), exchange_(endpoint, token, std::move(request)) {}
 
-std::expected<std::string, HttpStream::Ended> HttpStream::read() {
-  if (!ended_) look();
+std::expected<std::string, HttpStream::StreamEnd> HttpStream::read() {
+  if (!ended_) read_exchange();
   std::string came = exchange_.status() == kOk ? exchange_.take_part() : "";
   if (ended_ && came.empty()) return std::unexpected(*ended_);
   return came;
 }
 
-void HttpStream::look() {
+void HttpStream::read_exchange() {
   const auto answer = exchange_.read(fd());
   if (answer == uplink::Exchange::Answer::Lost) ended_ = {.why = exchange_.doubt().why};
   if (answer == uplink::Exchange::Answer::Whole) {
@@ -225,35 +225,35 @@ std::expected<settings::Address, std::string> resolve(const settings::Address& a
 }
 
 /// How the options name Adit.
-struct Named {
+struct AditLocation {
   std::string at = {};      // "": by the settings
   const char* source = "";  // "--at" or "ADIT_AT", for errors
   std::optional<Context> context = {};
 };
 
-std::expected<Named, std::string> named_by(const Options& options) {
+std::expected<AditLocation, std::string> named_by(const Options& options) {
   const bool file_named = options.settings != kGivenSettings;
   const std::string at = file_named ? options.at : option_or_environment(options.at, "ADIT_AT");
-  if (at.empty() && file_named) return Named{};
+  if (at.empty() && file_named) return AditLocation{};
   const auto contexts = ADIT_TRY(load_contexts(contexts_file()));
   const Context* const context = contexts.find(at.empty() ? contexts.current : at);
-  if (context != nullptr) return Named{.at = context->at, .context = *context};
-  return Named{.at = at, .source = options.at.empty() ? "ADIT_AT: " : "--at: "};
+  if (context != nullptr) return AditLocation{.at = context->at, .context = *context};
+  return AditLocation{.at = at, .source = options.at.empty() ? "ADIT_AT: " : "--at: "};
 }
 
-std::expected<settings::Address, std::string> address_of(const Options& options, const Named& named) {
+std::expected<settings::Address, std::string> address_of(const Options& options, const AditLocation& named) {
   if (!named.at.empty()) {
     const auto address = parse_location(named.at);
     if (!address) return std::unexpected(named.source + address.error());
     return resolve(*address);
   }
   const bool file_named = options.settings != kGivenSettings;
-  const bool is_saved = !file_named && host::may_exist(options.saved_settings);
+  const bool is_saved = !file_named && host::can_exist(options.saved_settings);
   return is_saved ? address_in(options.saved_settings, "run adit as root, or ")
                   : address_in(options.settings, "");
 }
 
-Result<Token> token_of(const Options& options, const Console& console, const Named& named) {
+Result<Token> token_of(const Options& options, const Console& console, const AditLocation& named) {
   const std::string file = option_or_environment(options.token_file, "ADIT_TOKEN_FILE"),
                     text = variable("ADIT_TOKEN");
   if (file == "-") return Token{ADIT_TRY(read_token(console, "token: ")), "the input"};
@@ -294,7 +294,7 @@ Result<std::string> body_of(const Adit& adit, std::expected<HttpReply, NoReply> 
   return std::move(reply->body);
 }
 
-std::unexpected<Failure> not_understood(const Adit& adit, const std::string& why) {
+std::unexpected<Failure> unreadable_answer(const Adit& adit, const std::string& why) {
   return to_failure("cannot read the answer of Adit at " + to_text(adit.address) + ": " + why);
 }
 
@@ -402,13 +402,13 @@ Result<void> read_into(const Adit& adit, const Result<codec::Value>& answer, con
   codec::Reading reading;
   kind.read(codec::Field(*answer, reading), row);
   if (const auto outcome = reading.outcome(true); !outcome)
-    return not_understood(adit, "it is another version: " + outcome.error().sentence);
+    return unreadable_answer(adit, "it is another version: " + outcome.error().sentence);
   return {};
 }
 
 Result<codec::Value> json_in(const Adit& adit, std::string_view body) {
   auto value = codec::parse_json(body);
-  if (!value) return not_understood(adit, "its answer is not JSON: " + value.error());
+  if (!value) return unreadable_answer(adit, "its answer is not JSON: " + value.error());
   return *std::move(value);
 }
 
@@ -425,7 +425,7 @@ Outcome act_on_each(const Call& call, const std::function<Result<Outcome>(std::i
   Outcome all;
   for (const std::int64_t number : call.options.numbers) {
     const auto one = act_on(number);
-    const Outcome outcome = one ? *one : unable(one.error());
+    const Outcome outcome = one ? *one : failure_outcome(one.error());
     all.exit = std::max(all.exit, outcome.exit);
     all.out += outcome.out;
     all.err += outcome.err;
@@ -449,7 +449,7 @@ Result<void> write_to(const std::string& file, const std::string& content) {
   return {};
 }
 
-Outcome unable(const Failure& failure) {
+Outcome failure_outcome(const Failure& failure) {
   return {failure.exit, "", "adit: " + host::escape(failure.sentence) + '\n'};
 }
 

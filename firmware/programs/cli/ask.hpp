@@ -99,19 +99,19 @@ class HttpStream {
   /// Readable if there is data or the end.
   int fd() const { return fd_.get(); }
 
-  struct Ended {
+  struct StreamEnd {
     int status = 0;  // of an answer other than 200; 0: the answer was 200, or absent
     std::string why;
   };
   /// The new data of a 200's body. Does not block.
-  std::expected<std::string, Ended> read();
+  std::expected<std::string, StreamEnd> read();
 
  private:
-  void look();
+  void read_exchange();
 
   loop::FileDescriptor fd_;
   uplink::Exchange exchange_;
-  std::optional<Ended> ended_;
+  std::optional<StreamEnd> ended_;
 };
 
 /// Address and token of the Adit that the options select.
@@ -179,14 +179,14 @@ Result<Fetched<Row>> fetch(const Adit& adit, const std::string& target) {
 }
 
 /// Time limit and interval of questions for an action's outcome.
-struct Waiting {
+struct PollPolicy {
   std::chrono::milliseconds within, every;
   bool may_be_away = false;  // Adit need not answer until then
   const char* late = "";     // the error at the time limit
 };
 /// Fetches the row until `is_over` returns true for it.
 template <class Row, class IsOver>
-Result<Fetched<Row>> fetch_until(const Adit& adit, const std::string& target, const Waiting& waiting,
+Result<Fetched<Row>> fetch_until(const Adit& adit, const std::string& target, const PollPolicy& waiting,
                                  IsOver is_over) {
   const auto end = std::chrono::steady_clock::now() + waiting.within;
   while (true) {
@@ -227,6 +227,6 @@ Result<void> confirm(const Options& options, const Console& console, const std::
 Result<void> write_to(const std::string& file, const std::string& content);
 
 /// Prints the failure on standard error.
-Outcome unable(const Failure& failure);
+Outcome failure_outcome(const Failure& failure);
 
 }  // namespace adit::cli

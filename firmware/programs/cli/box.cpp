@@ -19,9 +19,9 @@
 namespace adit::cli {
 namespace {
 
-constexpr Waiting kConfirming{.within = std::chrono::seconds(5),
-                              .every = std::chrono::milliseconds(200),
-                              .late = "the change was confirmed but is still pending: see adit network"};
+constexpr PollPolicy kConfirming{.within = std::chrono::seconds(5),
+                                 .every = std::chrono::milliseconds(200),
+                                 .late = "the change was confirmed but is still pending: see adit network"};
 
 std::string side_line(const char* name, const std::string& interface, const std::string& addresses,
                       const std::optional<std::uint32_t>& gateway = {}) {
@@ -184,9 +184,9 @@ constexpr const char* kSeeUpdate = "adit update";
 /// Allows for a bundle over a slow link.
 constexpr std::chrono::minutes kUpload{30};
 /// Allows for a slot on a slow card.
-constexpr Waiting kInstalling{.within = std::chrono::minutes(25),
-                              .every = std::chrono::milliseconds(500),
-                              .late = "the box has not finished: see adit update"};
+constexpr PollPolicy kInstalling{.within = std::chrono::minutes(25),
+                                 .every = std::chrono::milliseconds(500),
+                                 .late = "the box has not finished: see adit update"};
 
 /// The result of the last update, or "".
 std::string last_line(const UpdateView& view) {
@@ -204,7 +204,7 @@ std::string text_of(const UpdateView& view, bool /*colour*/) {
   if (!view.runs_here && view.newer)
     return view.newer->empty() ? line("apt has no newer version") : newer_lines(view);
   if (!view.managed) return line("This box cannot be updated: ", view.why) + newer_lines(view);
-  const update::Running& running = view.status.running;
+  const update::RunningSystem& running = view.status.running;
   std::string out = line(running.version, " runs, in slot ", running.slot, " (an update goes into slot ",
                          running.other, ") of ", running.compatible);
   if (!view.status.stray.empty())

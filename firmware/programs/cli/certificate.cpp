@@ -44,7 +44,7 @@ Result<Outcome> show_certificate(const Call& call) {
 Result<Outcome> set_certificate(const Call& call) {
   const std::string& path = call.options.argument();
   auto file = host::slurp(path, access::kLargestUpload);
-  if (!file) return to_failure(host::trouble(path, file.error()));
+  if (!file) return to_failure(host::path_error(path, file.error()));
   if (const auto pem = access::read_pem(file->text); !pem) return to_failure(path + ": " + pem.error());
   return replace(call, kCertificate, std::move(file->text), "application/octet-stream");
 }

@@ -62,7 +62,7 @@ std::vector<std::string> warnings_of(const Options& options, const Settings& set
   const std::string unread = secrets ? secrets->unread : secrets.error();
   if (!unread.empty()) sentences.push_back("cannot check the tokens: " + unread);
   if (secrets) {
-    for (const auto& [name, sentence] : secrets->odd_tokens()) sentences.push_back(sentence);
+    for (const auto& [name, sentence] : secrets->token_warnings()) sentences.push_back(sentence);
   }
   const auto interfaces = host::interfaces();
   if (!interfaces) sentences.push_back("cannot check the team's network: " + interfaces.error());

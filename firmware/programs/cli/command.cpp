@@ -21,7 +21,7 @@ constexpr const char* kUnable =
 constexpr std::string_view kUsual = "--at --settings --token-file --json --version --help";
 
 /// Inserts rows of help text before the options.
-void put_first(Program& program, const std::vector<Row>& rows) {
+void prepend_rows(Program& program, const std::vector<Row>& rows) {
   program.rows.insert(program.rows.begin(), rows.begin(), rows.end());
 }
 
@@ -30,16 +30,17 @@ void limit_to(Program& program, const CommandRow& command) {
   const bool checks = command.name == std::string_view("check");
   std::erase_if(program.rows, [&](const Row& row) {
     return (checks && row.word == std::string_view("--settings")) ||
-           std::ranges::none_of(command.forms, [&](const Form& form) { return takes(form, row.word); });
+           std::ranges::none_of(command.forms,
+                                [&](const Form& form) { return accepts_option(form, row.word); });
   });
 }
 
 /// "with export: " or "without a subcommand: " if only some forms take an option; "" if all do.
-std::string takers_of(const CommandRow& command, const char* option) {
+std::string forms_with(const CommandRow& command, const char* option) {
   std::string words;
   bool by_all = true;
   for (const Form& form : command.forms) {
-    if (!takes(form, option)) {
+    if (!accepts_option(form, option)) {
       by_all = false;
     } else if (*form.word != '\0') {
       words.append(words.empty() ? "" : ", ").append(form.word);
@@ -66,7 +67,7 @@ void explain_all(Program& program) {
   for (const CommandRow& row : commands())
     rows.push_back({row.name, "", row.sentence, command_line::ValueSetter()});
   std::erase_if(program.rows, [](const Row& row) { return !is_among(row.word, kUsual); });
-  put_first(program, rows);
+  prepend_rows(program, rows);
   program.ending =
       "Exit status:\n  0  if the command succeeded and no alarm needs the operator\n"
       "  1  if an alarm needs the operator, the settings are wrong, or Adit rejected an action";
@@ -94,13 +95,13 @@ void explain(Program& program, const CommandRow& command, std::deque<std::string
   if (*command.details != '\0') program.about.append("\n\n").append(command.details);
   limit_to(program, command);
   for (Row& row : program.rows)
-    row.help = sentences.emplace_back(takers_of(command, row.word) + row.help).c_str();
+    row.help = sentences.emplace_back(forms_with(command, row.word) + row.help).c_str();
   std::vector<Row> rows;
   for (const Form& form : command.forms) {
     if (*form.word != '\0')
       rows.push_back({form.word, form.argument.shown, form.sentence, command_line::ValueSetter()});
   }
-  put_first(program, rows);
+  prepend_rows(program, rows);
   program.ending.append("Exit status:\n  0  if ").append(command.fine);
   if (*command.attention != '\0') program.ending.append("\n  1  if ").append(command.attention);
   program.ending.append(kUnable);
@@ -121,7 +122,7 @@ std::string see_help(const CommandRow* about) {
                        "\"\n");
 }
 
-std::string help_about(const CommandRow* about) {
+std::string help_text(const CommandRow* about) {
   Options options;
   Program program = command_line::full_program(command_line_of, options);
   std::deque<std::string> sentences;
@@ -135,7 +136,7 @@ std::string help_about(const CommandRow* about) {
 
 Outcome run(const Options& options, const Console& console) {
   const auto outcome = outcome_of(options, console);
-  return outcome ? *outcome : unable(outcome.error());
+  return outcome ? *outcome : failure_outcome(outcome.error());
 }
 
 Outcome run(std::span<const std::string_view> words, const Console& console) {
@@ -145,7 +146,7 @@ Outcome run(std::span<const std::string_view> words, const Console& console) {
     return {Exit::Unable, "", "adit: " + host::escape(sentence) + '\n' + see_help(command)};
   }
   if (options->version) return {Exit::Fine, "adit " ADIT_VERSION "\n", ""};
-  if (options->help) return {Exit::Fine, help_about(options->command), ""};
+  if (options->help) return {Exit::Fine, help_text(options->command), ""};
   return run(*options, console);
 }
 

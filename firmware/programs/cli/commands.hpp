@@ -56,7 +56,7 @@ struct CommandRow {
 std::span<const CommandRow> commands();
 
 /// The text of `adit COMMAND --help`; null: of `adit --help`.
-[[gnu::cold]] std::string help_about(const CommandRow* command);
+[[gnu::cold]] std::string help_text(const CommandRow* command);
 
 /// The line after an error that names the right help.
 [[gnu::cold]] std::string see_help(const CommandRow* command);

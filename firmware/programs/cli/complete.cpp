@@ -60,7 +60,7 @@ Result<Outcome> complete_reports(const Call& call) {
     std::vector<Candidate> all;
     for (const facts::ReportRow& report : reports) {
       if (word.empty() || word == "show" || std::ranges::count(verbs_for(report), word) > 0)
-        all.push_back({std::to_string(report.number), report.type + ", " + life_of(report)});
+        all.push_back({std::to_string(report.number), report.type + ", " + report_state(report)});
     }
     return all;
   });

@@ -64,7 +64,7 @@ std::string contexts_file() {
 }
 
 std::expected<Contexts, std::string> load_contexts(const std::string& file) {
-  if (file.empty() || !host::may_exist(file)) return Contexts{};
+  if (file.empty() || !host::can_exist(file)) return Contexts{};
   const auto text = ADIT_TRY(host::read_file(file));
   auto contexts = codec::read_file<Contexts>(text);
   if (!contexts) return std::unexpected(file + ": " + contexts.error());
@@ -77,7 +77,7 @@ std::expected<void, std::string> save(const Contexts& contexts, const std::strin
   const std::string folder = file.substr(0, file.rfind('/'));
   for (const std::string& each : {folder.substr(0, folder.rfind('/')), folder}) {
     if (::mkdir(each.c_str(), kOwnersFolder) != 0 && errno != EEXIST)
-      return std::unexpected(host::trouble(each, errno));
+      return std::unexpected(host::path_error(each, errno));
   }
   return host::write_file(file, codec::write_file(contexts), kOwnersFile);
 }

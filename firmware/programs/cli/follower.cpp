@@ -21,8 +21,8 @@ Event event_of(std::string_view lines) {
   return event;
 }
 
-Look to_look(const Adit& adit, const codec::Value& told) {
-  Seen seen{told, {}};
+FetchResult parse_view(const Adit& adit, const codec::Value& told) {
+  FetchedRun seen{told, {}};
   const auto is_read = read_into(adit, told, codec::kind_of<api::RunView>, &seen.view);
   if (!is_read) return std::unexpected(is_read.error().sentence);
   return seen;
@@ -44,7 +44,7 @@ std::optional<Event> EventReader::next() {
   }
 }
 
-std::optional<Look> Follower::look() {
+std::optional<FetchResult> Follower::poll() {
   if (!stream_) return Clock::now() < again_ ? std::nullopt : open();
   auto came = stream_->read();
   if (!came) return on_ended(came.error());
@@ -54,10 +54,10 @@ std::optional<Look> Follower::look() {
     return on_lost("no event for 6 s");
   }
   events_.feed(*came);
-  return news();
+  return read_events();
 }
 
-std::optional<Look> Follower::open() {
+std::optional<FetchResult> Follower::open() {
   again_ = Clock::now() + kAgain;
   auto stream =
       ADIT_TRY(HttpStream::ask(adit_.address, adit_.token.token, get_request("/adit/events"), kReadPatience));
@@ -69,7 +69,7 @@ std::optional<Look> Follower::open() {
 }
 
 /// After a stream that had events, asks again at once. Only if that fails is Adit away.
-std::optional<Look> Follower::on_ended(const HttpStream::Ended& end) {
+std::optional<FetchResult> Follower::on_ended(const HttpStream::StreamEnd& end) {
   if (end.status != 0) {
     stream_.reset();
     return ask();
@@ -79,20 +79,20 @@ std::optional<Look> Follower::on_ended(const HttpStream::Ended& end) {
   return Clock::now() < again_ ? std::nullopt : open();
 }
 
-std::optional<Look> Follower::on_lost(const std::string& why) {
+std::optional<FetchResult> Follower::on_lost(const std::string& why) {
   stream_.reset();
   return std::unexpected("lost the connection to Adit at " + to_text(adit_.address) + ": " + why);
 }
 
-Look Follower::ask() const {
+FetchResult Follower::ask() const {
   const auto json = get(adit_, "/adit/run");
   if (!json) return std::unexpected(json.error().sentence);
   const auto told = json_in(adit_, *json);
   if (!told) return std::unexpected(told.error().sentence);
-  return to_look(adit_, *told);
+  return parse_view(adit_, *told);
 }
 
-std::optional<Look> Follower::news() {
+std::optional<FetchResult> Follower::read_events() {
   bool is_news = false;
   while (const auto event = events_.next()) {
     if (!on_event(*event)) return on_lost("cannot read an event");
@@ -101,7 +101,7 @@ std::optional<Look> Follower::news() {
   if (events_.waiting() > kLargestBody) return on_lost("an event is too long");
   if (!is_news) return std::nullopt;
   has_told_ = true;
-  return to_look(adit_, told_);
+  return parse_view(adit_, told_);
 }
 
 bool Follower::on_event(const Event& event) {

@@ -34,11 +34,11 @@ class EventReader {
 };
 
 /// The run as Adit reports it, or why it does not.
-struct Seen {
+struct FetchedRun {
   codec::Value told;
   api::RunView view;
 };
-using Look = std::expected<Seen, std::string>;
+using FetchResult = std::expected<FetchedRun, std::string>;
 
 /// Follows a running Adit by its events: the whole view, then its changes. After the stream ends (a restart,
 /// a cable) it opens a new one. If too many pages are open, it fetches the view each second.
@@ -52,16 +52,16 @@ class Follower {
   explicit Follower(const Adit& adit) : adit_(adit) {}
 
   /// The news, if any. Call first, then if fd() is readable, and at due().
-  std::optional<Look> look();
+  std::optional<FetchResult> poll();
   int fd() const { return stream_ ? stream_->fd() : -1; }
   Clock::time_point due() const { return stream_ ? heard_ + kSilence : again_; }
 
  private:
-  std::optional<Look> open();
-  std::optional<Look> on_ended(const HttpStream::Ended& end);
-  std::optional<Look> on_lost(const std::string& why);
-  Look ask() const;
-  std::optional<Look> news();
+  std::optional<FetchResult> open();
+  std::optional<FetchResult> on_ended(const HttpStream::StreamEnd& end);
+  std::optional<FetchResult> on_lost(const std::string& why);
+  FetchResult ask() const;
+  std::optional<FetchResult> read_events();
   bool on_event(const Event& event);
 
   const Adit& adit_;

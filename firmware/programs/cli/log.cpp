@@ -128,7 +128,7 @@ Result<Outcome> show_version(const Options& options, const Console& console) {
   const auto adit = adit_of(options, console);
   const auto about = adit ? fetch<api::About>(*adit, "/adit/about") : std::unexpected(adit.error());
   if (!about) {
-    Outcome outcome = unable(about.error());
+    Outcome outcome = failure_outcome(about.error());
     if (!options.json) outcome.out = line("adit ", ADIT_VERSION);
     return outcome;
   }

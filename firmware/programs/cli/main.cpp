@@ -48,7 +48,7 @@ void end_silence() {
   tcsetattr(STDIN_FILENO, TCSAFLUSH, &before_silence);
 }
 
-void end_by(int signal) {
+void on_end_signal(int signal) {
   end_silence();
   std::signal(signal, SIG_DFL);
   std::raise(signal);
@@ -59,7 +59,7 @@ class Silence {
  public:
   Silence() : is_terminal_(tcgetattr(STDIN_FILENO, &before_silence) == 0) {
     if (!is_terminal_) return;
-    for (const int signal : kSignals) std::signal(signal, end_by);
+    for (const int signal : kSignals) std::signal(signal, on_end_signal);
     termios silent = before_silence;
     silent.c_lflag &= ~static_cast<tcflag_t>(ECHO);
     tcsetattr(STDIN_FILENO, TCSAFLUSH, &silent);
@@ -92,7 +92,7 @@ std::optional<std::string> read_secret(const std::string& question) {
 
 int main(int count, char** arguments) {
   using namespace adit::cli;
-  adit::loop::tell_of_caught(
+  adit::loop::set_exception_logger(
       [](const char*, const char* what) { std::fprintf(stderr, "adit: stopped: %s\n", what); });
   const std::vector<std::string_view> words(arguments + 1, arguments + count);
   const bool screen = is_terminal(STDOUT_FILENO) && has_escapes();

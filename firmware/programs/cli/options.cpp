@@ -28,7 +28,7 @@ std::expected<std::optional<Token>, std::string> find_token(const std::string& f
   for (const char* name : {"/team.token", "/scoring.token"}) {
     for (const std::string& folder : folders) {
       const std::string path = folder + name;
-      if (!host::may_exist(path)) continue;
+      if (!host::can_exist(path)) continue;
       const auto text = host::read_file(path);
       if (!text)
         return std::unexpected(text.error() +
@@ -89,7 +89,7 @@ class Words {
     const std::string spoken = this->command_text();
     if (form == nullptr) form = command->forms.data();
     for (const std::string& option : given) {
-      if (!takes(*form, option)) return spoken + " does not take " + option;
+      if (!accepts_option(*form, option)) return spoken + " does not take " + option;
     }
     if (count_ < form->argument.least) return missing_argument();
     return disagreement();
@@ -201,7 +201,7 @@ bool is_among(std::string_view option, std::string_view options) {
   return icd::sentence(" ", options, " ").contains(icd::sentence(" ", option, " "));
 }
 
-bool takes(const Form& form, std::string_view option) {
+bool accepts_option(const Form& form, std::string_view option) {
   return is_among(option, "--json --settings --help") || is_among(option, form.options) ||
          (form.run.asks != nullptr && is_among(option, "--at --token-file"));
 }

@@ -89,7 +89,7 @@ struct Options {
 /// Whether an option is one of `options`, which are separated by blanks.
 bool is_among(std::string_view option, std::string_view options);
 /// Whether the form takes the option.
-bool takes(const Form& form, std::string_view option);
+bool accepts_option(const Form& form, std::string_view option);
 
 /// An error in a command line.
 struct WrongLine {

@@ -89,10 +89,10 @@ std::string facts_of(const api::ReportDetail& detail, bool colour) {
   facts.add("report", std::to_string(report.number), Tone::Strong);
   facts.add("type", report.type, Tone::Strong);
   facts.add("at", report.position ? place_of(*report.position) : "lost");
-  facts.add("state", life_of(report), tone_of(report));
+  facts.add("state", report_state(report), tone_of(report));
   facts.add("reason", report.note);
-  facts.add("answer", said_of(report));
-  facts.add("score", gained_by(report));
+  facts.add("answer", outcome_text(report));
+  facts.add("score", gain_text(report));
   facts.add("run", std::to_string(report.run));
   facts.add("sender", report.sender);
   facts.add("robot", report.robot);
@@ -104,7 +104,7 @@ std::string facts_of(const api::ReportDetail& detail, bool colour) {
 
 std::string state_text(const std::string& state) {
   const auto known = dispatch::state_named(state);
-  return known ? std::string(dispatch::shown_name_of(*known)) : state;
+  return known ? std::string(dispatch::display_name(*known)) : state;
 }
 
 std::string history(const api::ReportDetail& detail, bool colour) {

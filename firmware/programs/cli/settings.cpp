@@ -42,7 +42,7 @@ Value* item_of(Value& list, std::string_view which) {
   return found == items->end() ? nullptr : &*found;
 }
 
-bool begins(std::string_view path, std::string_view name) {
+bool has_prefix(std::string_view path, std::string_view name) {
   return path.starts_with(name) && (path.size() == name.size() || path[name.size()] == '.' ||
                                     path[name.size()] == '[' || name.ends_with("[]"));
 }
@@ -111,7 +111,7 @@ Result<std::vector<ShownKey>> keys_named(const api::SetupView& setup, const std:
   std::vector<std::string_view> known;
   for (const api::KeyRow& key : setup.keys) {
     known.push_back(key.path);
-    if (!begins(key.path, pattern)) continue;
+    if (!has_prefix(key.path, pattern)) continue;
     found.push_back({key, {}});
     if (!has_item) {
       put_values(settings, key.path, "", found.back().values);
@@ -170,7 +170,7 @@ namespace {
 
 constexpr const char* kSettings = "/adit/settings";
 constexpr const char* kSee = "adit settings";
-constexpr Waiting kApplied{
+constexpr PollPolicy kApplied{
     .within = std::chrono::seconds(5), .every = std::chrono::milliseconds(100), .may_be_away = true};
 
 std::string warnings_text(const std::vector<std::string>& warnings, bool colour) {

@@ -21,7 +21,7 @@ constexpr const char* kSeeSpare = "adit spare";
 constexpr std::chrono::seconds kFileWithin{60};
 
 /// Waits for a busy or restarting box. The stick may be slow, and another request may come first.
-Waiting box_waiting(std::chrono::seconds within) {
+PollPolicy box_waiting(std::chrono::seconds within) {
   return {.within = within,
           .every = std::chrono::milliseconds(300),
           .may_be_away = true,
@@ -122,7 +122,7 @@ Result<std::string> read_export(const std::string& path) {
   if (!file.is_open() || file.bad()) return to_failure(path + ": cannot be read");
   bytes.resize(static_cast<std::size_t>(file.gcount()));
   if (bytes.size() > spare::kLargestExport) return to_failure(path + ": too large for an export");
-  if (const std::string why = spare::not_an_export(bytes); !why.empty()) return to_failure(path + ": " + why);
+  if (const std::string why = spare::export_error(bytes); !why.empty()) return to_failure(path + ": " + why);
   return bytes;
 }
 
@@ -138,14 +138,14 @@ Result<std::string> name_on_stick(const Call& call) {
   return to_failure(why, Exit::Attention);
 }
 
-Result<void> take_from_stick(const Call& call) {
+Result<void> import_from_stick(const Call& call) {
   const auto name = ADIT_TRY(name_on_stick(call));
   const codec::Value wanted{codec::Value::Object{{"name", {name}}}};
   ADIT_TRY(ask_stick(call.adit, "/adit/spare/from-stick", codec::write_json(wanted)));
   return {};
 }
 
-Result<void> take_from_file(const Call& call) {
+Result<void> import_file(const Call& call) {
   auto file = ADIT_TRY(read_export(call.options.argument()));
   ADIT_TRY(post(call.adit, {.target = "/adit/spare/take",
                             .check = kSeeSpare,
@@ -175,7 +175,7 @@ Result<Outcome> export_spare(const Call& call) {
 Result<Outcome> take_spare(const Call& call) {
   const auto& [adit, options, console] = call;
   if (options.code.empty()) return to_failure("the code of the export is missing: give --code");
-  ADIT_TRY(options.stick ? take_from_stick(call) : take_from_file(call));
+  ADIT_TRY(options.stick ? import_from_stick(call) : import_file(call));
   const codec::Value code{codec::Value::Object{{"code", {options.code}}}};
   const auto opened = ADIT_TRY(
       post(adit, {.target = "/adit/spare/open", .check = kSeeSpare, .body = codec::write_json(code)}));

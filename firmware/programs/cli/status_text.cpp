@@ -26,7 +26,7 @@ std::string count_text(std::size_t count, const char* one, const char* several) 
   return count == 0 ? "" : std::to_string(count) + (count == 1 ? one : several);
 }
 
-std::string not_listed(const OmittedReports& rest) {
+std::string omitted_text(const OmittedReports& rest) {
   return count_text(rest.older, " older report is not listed\n", " older reports are not listed\n") +
          count_text(rest.of_other_runs, " report of another run is not listed: adit reports --run all\n",
                     " reports of other runs are not listed: adit reports --run all\n");
@@ -72,10 +72,10 @@ std::vector<std::string_view> verbs_for(const facts::ReportRow& report) {
   return verbs;
 }
 
-std::string life_of(const facts::ReportRow& report) {
+std::string report_state(const facts::ReportRow& report) {
   const auto state = dispatch::state_named(report.state);
   if (!state) return report.state;
-  std::string life(dispatch::shown_name_of(*state));
+  std::string life(dispatch::display_name(*state));
   if (report.sends_at) life += ", to be sent";
   return report.asking && *state == ReportState::InDoubt ? life + ", asking" : life;
 }
@@ -100,14 +100,14 @@ Tone tone_of(const facts::ReportRow& report) {
   return Tone::Warning;
 }
 
-std::string said_of(const facts::ReportRow& report) {
+std::string outcome_text(const facts::ReportRow& report) {
   const bool is_error = report.status >= 300 && !report.reconciled;
   return icd::join_words(std::array{std::string(report.reconciled ? "found out" : ""),
                                     is_error ? "error " + std::to_string(report.status) : "",
                                     report.report_status});
 }
 
-std::string gained_by(const facts::ReportRow& report) {
+std::string gain_text(const facts::ReportRow& report) {
   if (!report.score_change) return "";
   std::string text = *report.score_change > 0 ? "+" : "";
   return text.append(std::to_string(*report.score_change));
@@ -117,7 +117,7 @@ std::string reports_text(const std::vector<facts::ReportRow>& reports, const Omi
                          api::Time now, bool colour) {
   if (reports.empty())
     return (rest.of_other_runs == 0 ? "No reports so far.\n" : "No reports in this run so far.\n") +
-           not_listed(rest);
+           omitted_text(rest);
   using Row = facts::ReportRow;
   const std::vector<ColumnOf<Row>> columns = {
       {"no.", [](const Row& row) { return std::to_string(row.number); }, kRight},
@@ -126,14 +126,14 @@ std::string reports_text(const std::vector<facts::ReportRow>& reports, const Omi
       {"x", coordinate(&icd::Point::x), kRight},
       {"y", coordinate(&icd::Point::y), kRight},
       {"z", coordinate(&icd::Point::z), kRight},
-      {"state", [](const Row& row) { return Cell(life_of(row), tone_of(row)); }},
-      {"score", gained_by, kRight},
+      {"state", [](const Row& row) { return Cell(report_state(row), tone_of(row)); }},
+      {"score", gain_text, kRight},
       {"answer or reason",
-       [](const Row& row) { return icd::join_words(std::array{said_of(row), row.note}); }},
+       [](const Row& row) { return icd::join_words(std::array{outcome_text(row), row.note}); }},
       {"sender", &Row::sender},
       {"robot", &Row::robot},
       {"received", [now](const Row& row) { return duration(now - row.received) + " ago"; }, kRight}};
-  return table_of(reports, columns, colour) + not_listed(rest);
+  return table_of(reports, columns, colour) + omitted_text(rest);
 }
 
 namespace {
@@ -173,7 +173,7 @@ std::string clock_text(const alarms::ShownClock& shown, double seconds) {
 }
 
 /// Remaining time of the run by the settings.
-std::string to_go(const RunView& view, const alarms::ShownClock& shown) {
+std::string remaining_text(const RunView& view, const alarms::ShownClock& shown) {
   const double left = static_cast<double>(view.run_seconds) - shown.seconds;
   return clock_text(shown, std::abs(left)) + (left < 0 ? " over time" : " to go");
 }
@@ -185,8 +185,9 @@ std::string run_line(const RunView& view, bool colour) {
   const alarms::ShownClock& shown = *view.run_clock;
   const Tone tone = shown.old ? Tone::Faint : Tone::Strong;
   std::string text = "Run   " + paint(clock_text(shown, shown.seconds), tone, colour) + "   " +
-                     to_go(view, shown) + "   score " + paint(std::to_string(run.score), tone, colour) +
-                     "   " + paint(std::to_string(run.remaining_reports), tone, colour) + " reports left";
+                     remaining_text(view, shown) + "   score " +
+                     paint(std::to_string(run.score), tone, colour) + "   " +
+                     paint(std::to_string(run.remaining_reports), tone, colour) + " reports left";
   if (!run.current_team.empty()) text += "   team " + host::escape(run.current_team);
   text +=
       paint("   (heard " + duration(shown.age) + " ago)", shown.old ? Tone::Warning : Tone::Faint, colour);
@@ -202,7 +203,7 @@ std::string reports_line(const RunView& view, bool colour) {
   std::map<std::string, int> states;
   std::set<std::string> urgent;
   for (const facts::ReportRow& report : view.reports) {
-    const std::string state = life_of(report);
+    const std::string state = report_state(report);
     ++states[state];
     if (needs_the_operator(report)) urgent.insert(state);
   }
@@ -350,7 +351,7 @@ void add_alarm_lines(const api::RunView& before, const api::RunView& now, Lines&
 }
 
 /// The run without its clock, which always changes.
-std::string told_of_run(const api::RunView& view) {
+std::string run_text(const api::RunView& view) {
   if (!view.run) return "no status from the Command Post yet";
   const icd::RunStatus& run = *view.run;
   return icd::sentence("score ", run.score, ", ", run.remaining_reports, " reports left",
@@ -359,8 +360,8 @@ std::string told_of_run(const api::RunView& view) {
 
 void run(const api::RunView& before, const api::RunView& now, Lines& lines) {
   if (now.run_number != before.run_number) lines.add(icd::sentence("run ", now.run_number, " begins"));
-  const std::string told = told_of_run(now);
-  if (told != told_of_run(before))
+  const std::string told = run_text(now);
+  if (told != run_text(before))
     lines.add(now.run ? icd::sentence("run ", clock(now.run->run_clock), ": ", told) : "run: " + told);
 }
 
@@ -374,10 +375,10 @@ void add_report_lines(const api::RunView& before, const api::RunView& now, Lines
   for (const facts::ReportRow& report : now.reports) {
     const auto was = std::ranges::find(before.reports, report.number, &facts::ReportRow::number);
     const bool is_listed = was != before.reports.end();
-    const std::string life = life_of(report);
-    if (is_listed ? life_of(*was) == life : was_left_out(report, before)) continue;
+    const std::string life = report_state(report);
+    if (is_listed ? report_state(*was) == life : was_left_out(report, before)) continue;
     const std::string why = report.note.empty() ? "" : " (" + report.note + ")";
-    const std::string score = gained_by(report).empty() ? "" : ", score " + gained_by(report);
+    const std::string score = gain_text(report).empty() ? "" : ", score " + gain_text(report);
     lines.add(icd::sentence("report ", report.number, " ", report.type, ": ", life, score, why),
               tone_of(report));
   }
@@ -403,7 +404,7 @@ constexpr std::string_view kTold[] = {"none sent yet", kArrives,     kArrives,  
                                       kNotArriving,    kNotArriving, kNotArriving, kArrives, "silent"};
 static_assert(std::size(kTold) == std::size(facts::kArrivalWords));
 
-std::string_view told_of(const facts::ActivityRow& row) {
+std::string_view arrival_text(const facts::ActivityRow& row) {
   return kTold[static_cast<std::size_t>(row.arrival)];
 }
 
@@ -412,8 +413,8 @@ void add_arrival_lines(const api::RunView& before, const api::RunView& now, Line
     const auto was = std::ranges::find_if(before.activities, [&row](const facts::ActivityRow& each) {
       return each.robot == row.robot && each.kind == row.kind;
     });
-    const std::string_view told = told_of(row);
-    if (was != before.activities.end() && told_of(*was) == told) continue;
+    const std::string_view told = arrival_text(row);
+    if (was != before.activities.end() && arrival_text(*was) == told) continue;
     const std::string why = told == kNotArriving ? ": " + row.last_sentence : "";
     lines.add(icd::sentence(row.robot.empty() ? "all robots" : row.robot, ", ", row.kind, ": ", told, why),
               tone_of_level(row.level));

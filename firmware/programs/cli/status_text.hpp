@@ -16,12 +16,12 @@ bool needs_the_operator(const facts::ReportRow& report);
 bool is_finished(const facts::ReportRow& report);
 
 /// The report's state for people: "held", "in doubt", "in doubt, asking", "held, to be sent".
-std::string life_of(const facts::ReportRow& report);
+std::string report_state(const facts::ReportRow& report);
 Tone tone_of(const facts::ReportRow& report);
 /// The Command Post's answer in words: "scored", "found out, scored", "error 422", or "".
-std::string said_of(const facts::ReportRow& report);
+std::string outcome_text(const facts::ReportRow& report);
 /// "+1", "0", or "" if unknown.
-std::string gained_by(const facts::ReportRow& report);
+std::string gain_text(const facts::ReportRow& report);
 
 /// The subcommands of `adit reports` that apply to the report's state.
 std::vector<std::string_view> verbs_for(const facts::ReportRow& report);

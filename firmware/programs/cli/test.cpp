@@ -11,9 +11,10 @@ namespace adit::cli {
 namespace {
 
 /// Much longer than all steps together.
-constexpr Waiting kTesting{.within = std::chrono::minutes(2),
-                           .every = std::chrono::milliseconds(250),
-                           .late = "the test has not ended after 2 minutes: see the log on the System page"};
+constexpr PollPolicy kTesting{
+    .within = std::chrono::minutes(2),
+    .every = std::chrono::milliseconds(250),
+    .late = "the test has not ended after 2 minutes: see the log on the System page"};
 
 bool has_ended(const api::TestStep& step) {
   return step.state == "good" || step.state == "bad" || step.state == "skipped";

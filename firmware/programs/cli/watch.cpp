@@ -31,7 +31,7 @@ namespace {
 /// Waits; SIGINT, SIGTERM and SIGHUP end the wait instead of the program. Only for a process with one thread.
 class SignalPoll {
  public:
-  enum class Woken : std::uint8_t { ByTime, ByChange, ToEnd };
+  enum class WakeReason : std::uint8_t { ByTime, ByChange, ToEnd };
 
   /// `keys`: q or the end of standard input also ends the wait.
   explicit SignalPoll(bool keys) : keys_(keys) {
@@ -46,15 +46,15 @@ class SignalPoll {
   SignalPoll& operator=(const SignalPoll&) = delete;
 
   /// ByTime: the time is over, or `fd` (unless -1) is readable. ByChange: the screen's size has changed.
-  Woken wait(std::chrono::milliseconds longest, int fd) {
+  WakeReason wait(std::chrono::milliseconds longest, int fd) {
     std::array<pollfd, 3> ends{
         {{signals_.get(), POLLIN, 0}, {keys_ ? STDIN_FILENO : -1, POLLIN, 0}, {fd, POLLIN, 0}}};
-    if (poll(ends.data(), ends.size(), static_cast<int>(longest.count())) <= 0) return Woken::ByTime;
+    if (poll(ends.data(), ends.size(), static_cast<int>(longest.count())) <= 0) return WakeReason::ByTime;
     signalfd_siginfo signal{};
     if (read(signals_.get(), &signal, sizeof signal) == sizeof signal)
-      return signal.ssi_signo == SIGWINCH ? Woken::ByChange : Woken::ToEnd;
-    if (ends[1].revents == 0) return Woken::ByTime;
-    return ends_by_key() ? Woken::ToEnd : Woken::ByChange;
+      return signal.ssi_signo == SIGWINCH ? WakeReason::ByChange : WakeReason::ToEnd;
+    if (ends[1].revents == 0) return WakeReason::ByTime;
+    return ends_by_key() ? WakeReason::ToEnd : WakeReason::ByChange;
   }
 
  private:
@@ -125,18 +125,18 @@ class Screen {
 using Clock = Follower::Clock;
 
 /// A form of display.
-class Shown {
+class Display {
  public:
-  virtual ~Shown() = default;
-  virtual void show(const Look& seen) = 0;
+  virtual ~Display() = default;
+  virtual void show(const FetchResult& seen) = 0;
   /// Least time between two displays.
   virtual std::chrono::milliseconds spacing() const { return std::chrono::seconds(1); }
 };
 
-class AsJson : public Shown {
+class JsonDisplay : public Display {
  public:
-  explicit AsJson(const Console& console) : console_(console) {}
-  void show(const Look& seen) override {
+  explicit JsonDisplay(const Console& console) : console_(console) {}
+  void show(const FetchResult& seen) override {
     if (seen) console_.print(codec::write_json(seen->told) + '\n');
   }
 
@@ -144,10 +144,10 @@ class AsJson : public Shown {
   const Console& console_;
 };
 
-class AsLines : public Shown {
+class LineDisplay : public Display {
  public:
-  explicit AsLines(const Console& console) : console_(console) {}
-  void show(const Look& seen) override {
+  explicit LineDisplay(const Console& console) : console_(console) {}
+  void show(const FetchResult& seen) override {
     const std::string trouble = seen ? "" : seen.error();
     if (trouble != trouble_)
       console_.print(trouble.empty() ? "Adit answers again\n" : host::escape(trouble) + '\n');
@@ -165,11 +165,11 @@ class AsLines : public Shown {
   std::string trouble_;
 };
 
-class OnScreen : public Shown {
+class ScreenDisplay : public Display {
  public:
-  OnScreen(const Console& console, std::string where)
+  ScreenDisplay(const Console& console, std::string where)
       : console_(console), where_(std::move(where)), screen_(console.print) {}
-  void show(const Look& seen) override {
+  void show(const FetchResult& seen) override {
     if (seen) last_ = seen->view;
     const std::string at = last_ ? "  " + api::iso_time(last_->now) : "";
     const std::string head = "adit watch  " + where_ + at + "  q ends\n";
@@ -188,10 +188,10 @@ class OnScreen : public Shown {
   std::optional<api::RunView> last_;
 };
 
-std::unique_ptr<Shown> shown_for(const Options& options, const Console& console, const Adit& adit) {
-  if (options.json) return std::make_unique<AsJson>(console);
-  if (console.screen) return std::make_unique<OnScreen>(console, to_text(adit.address));
-  return std::make_unique<AsLines>(console);
+std::unique_ptr<Display> make_display(const Options& options, const Console& console, const Adit& adit) {
+  if (options.json) return std::make_unique<JsonDisplay>(console);
+  if (console.screen) return std::make_unique<ScreenDisplay>(console, to_text(adit.address));
+  return std::make_unique<LineDisplay>(console);
 }
 
 }  // namespace
@@ -201,17 +201,17 @@ Result<Outcome> watch(const Call& call) {
   const bool drawn = console.screen && !options.json;
   SignalPoll poll(drawn && isatty(STDIN_FILENO) == 1);
   Follower follower(adit);
-  std::unique_ptr<Shown> shown;  // created with the first display
-  std::optional<Look> seen;
+  std::unique_ptr<Display> shown;  // created with the first display
+  std::optional<FetchResult> seen;
   bool is_news = false;
   Clock::time_point next{};
   while (true) {
-    if (auto look = follower.look()) {
+    if (auto look = follower.poll()) {
       if (!seen && !*look) return to_failure(look->error());
       seen = std::move(look);
       is_news = true;
     }
-    if (!shown && seen) shown = shown_for(options, console, adit);
+    if (!shown && seen) shown = make_display(options, console, adit);
     if (is_news && Clock::now() >= next) {
       shown->show(*seen);
       next = Clock::now() + shown->spacing();
@@ -220,8 +220,8 @@ Result<Outcome> watch(const Call& call) {
     const auto until = is_news ? std::min(next, follower.due()) : follower.due();
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
     const auto woken = poll.wait(std::max(left, std::chrono::milliseconds(0)), follower.fd());
-    if (woken == SignalPoll::Woken::ToEnd) return Outcome{};
-    if (woken == SignalPoll::Woken::ByChange && drawn && shown) shown->show(*seen);
+    if (woken == SignalPoll::WakeReason::ToEnd) return Outcome{};
+    if (woken == SignalPoll::WakeReason::ByChange && drawn && shown) shown->show(*seen);
   }
 }
 

@@ -25,12 +25,12 @@ class FileReturn {
         can_be_read_(std::move(can_be_read)),
         rest_(rest),
         is_back_(std::move(is_back)),
-        timer_(loop.timer([this] { look(); })) {
+        timer_(loop.timer([this] { check(); })) {
     timer_.call_at(loop_.now() + rest_);
   }
 
  private:
-  void look() {
+  void check() {
     const auto can = std::make_shared<bool>(false);
     writer_.submit([can, can_be_read = can_be_read_] { *can = can_be_read(); },
                    [this, can] {

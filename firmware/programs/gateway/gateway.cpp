@@ -93,7 +93,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       lights_(loop, std::move(parts_.lines)),
       links_(
           loop, settings_, host::carrier, host::link_changes(), [this] { api_.on_changed(); },
-          [this] { flow_.link_is_back(); }),
+          [this] { flow_.on_link_up(); }),
       button_(loop, std::move(parts_.button), lights_, [this](panel::Press press) { on_pressed(press); }),
       sessions_(parts_.runtime_folder + '/' + admin::SessionKeeper::kFile, loop.now()),
       accounts_(loop, log_ins_, disk_writer_, sessions_, parts_.options.state,
@@ -149,14 +149,15 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
             .box = box_,
             .runs = flow_.archive(),
             .clock = clock_,
-            .finer = flow_.finer(),
+            .finer = flow_.fine_map(),
             .covered = flow_.covered_map(),
             .spare = spare_,
             .certificate = certificate_},
            tokens().all, redaction()),
       routes_(icd_options(), flow_, flow_.workers(), api_),
-      listeners_(loop, parts_.sockets, routes_, guesses_,
-                 [this](intake::Ended why, const std::string& address) { overview_.on_ended(why, address); }),
+      listeners_(
+          loop, parts_.sockets, routes_, guesses_,
+          [this](intake::CloseReason why, const std::string& address) { overview_.on_ended(why, address); }),
       team_ports_(loop, parts_.options.state, parts_.options.ports),
       second_(loop.timer([this] { every_second(); })),
       change_(loop.timer([this] { apply_change(); })) {}
@@ -232,11 +233,11 @@ void Gateway::on_files_readable() {
 std::expected<void, std::string> Gateway::start() {
   host::keep_out_of_log(redaction());
   if (!spare_.standby().empty())
-    flow_.stand_by(
+    flow_.set_standby(
         icd::sentence("this box is on standby: ", spare_.standby(), "; it accepts and sends no messages"));
   flow_.start();
   await_files();
-  overview_.carry_on();
+  overview_.restore();
   ADIT_TRY(listen(settings_.team));
   every_second();
   return {};
@@ -274,18 +275,18 @@ void Gateway::end() {
 
 void Gateway::every_second() {
   second_.call_at(loop_.now() + std::chrono::seconds(1));
-  look_at_clock();
+  check_clock();
   flow_.tick(disk_writer_);
-  links_.look();
-  overview_.look();
+  links_.refresh();
+  overview_.update();
   show_lights();
-  lights_.beat();
+  lights_.send_heartbeat();
   network_.every_second();
   updates_.every_second();
   certificate_.every_second();
   team_ports_.every_second(listeners_.ports());
   keep_sessions();
-  look_at_sockets();
+  check_sockets();
   listeners_.tick();
   if (std::string line = status_line(); line != notified_) {
     host::notify_status(line);
@@ -294,20 +295,20 @@ void Gateway::every_second() {
 }
 
 /// Anybody may set the time of day, in both directions. Offers better sources too.
-void Gateway::look_at_clock() {
+void Gateway::check_clock() {
   if (const auto ntp = wanted_ntp()) clock_.every_second(*ntp);
   const forward::KnownTimes known = flow_.known_times();
   clock_.on_offered({clock::Source::LastKnown, loop_.wall_now()});
   clock_.on_offered({clock::Source::CommandPost, known.command_post.value_or(0)});
   clock_.on_offered({clock::Source::Robots, known.robots.value_or(0)});
-  const double told = clock_.is_told() ? loop_.wall_now() : 0;
+  const double told = clock_.has_source() ? loop_.wall_now() : 0;
   if (const double time = std::max(told, known.command_post.value_or(0)); time > 0)
     flow_.set_known_time(time);
-  const double step = loop_.look_at_wall(clock_.is_set().value_or(false));
+  const double step = loop_.check_wall_clock(clock_.is_set().value_or(false));
   if (step == 0) return;
   host::log(host::Level::Notice, "the clock was set", {{"ahead_by_s", icd::sentence(step)}});
-  flow_.wall_was_set(step);
-  overview_.wall_was_set(step);
+  flow_.on_wall_set(step);
+  overview_.on_wall_set(step);
   api_.on_changed();
 }
 
@@ -321,7 +322,7 @@ std::optional<clock::Ntp> Gateway::wanted_ntp() const {
 }
 
 /// The team's interface may have been replaced.
-void Gateway::look_at_sockets() {
+void Gateway::check_sockets() {
   const ListenSockets::Reach reach = parts_.sockets.reach();
   if (reach == ListenSockets::Reach::Well || flow_.is_ending()) return;
   host::log(host::Level::Warning, "the team's interface was replaced; listening again");
@@ -361,7 +362,7 @@ api::Time Gateway::identify(double seconds) {
 }
 
 void Gateway::on_pressed(panel::Press press) {
-  accounts_.button_pressed();
+  accounts_.on_button_press();
   switch (press) {
     case panel::Press::Identify:
       host::log(host::Level::Notice, "the button was pressed");
@@ -401,7 +402,7 @@ void Gateway::apply_change() {
 }
 
 /// An error: unchanged, but sockets may be closed.
-std::expected<void, std::string> Gateway::take_over(admin::Store::Loaded next) {
+std::expected<void, std::string> Gateway::take_over(admin::Store::LoadedSettings next) {
   settings::Settings in_use = settings::effective_settings(next.settings);
   settings::Restarts restarts = settings::restarts_by(settings_, in_use);
   if (restarts.listeners) {
@@ -414,20 +415,20 @@ std::expected<void, std::string> Gateway::take_over(admin::Store::Loaded next) {
   const forward::Tokens now = tokens();
   restarts.scoring = restarts.scoring || !icd::same(before.scoring, now.scoring);
   restarts.mapping = restarts.mapping || !icd::same(before.mapping, now.mapping);
-  tell_of_settings(restarts, now);
+  log_settings(restarts, now);
   parts_.store.settle(parts_.loaded.settings);
   parts_.sockets.settle();
   return {};
 }
 
-void Gateway::tell_of_settings(const settings::Restarts& restarts, const forward::Tokens& tokens) {
+void Gateway::log_settings(const settings::Restarts& restarts, const forward::Tokens& tokens) {
   flow_.on_settings_changed(restarts, tokens);
   overview_.on_settings_changed(restarts);
   routes_.serve_with(icd_options());
   api_.set_tokens(tokens.all, redaction());
   host::keep_out_of_log(redaction());
   guesses_.forget();
-  links_.look_at(settings_);
+  links_.watch_settings(settings_);
   box_.set_settings(settings::file_of(parts_.loaded.settings));
   if (restarts.panel && !parts_.board.panel) reopen_panel();
   setup_.set_running(parts_.loaded, parts_.trouble);
@@ -436,8 +437,8 @@ void Gateway::tell_of_settings(const settings::Restarts& restarts, const forward
 
 /// A line has one holder, so the old ones are released first.
 void Gateway::reopen_panel() {
-  lights_.let_go();
-  button_.let_go();
+  lights_.release_lines();
+  button_.release_line();
   auto panel =
       box::open_panel(settings_.panel, {.socket = parts_.options.panel, .folder = parts_.runtime_folder});
   lights_.set_lines(std::move(panel.lines));

@@ -50,9 +50,9 @@ class Gateway final : public api::GatewayControl {
   void make_way();
   void end();
   void every_second();
-  void look_at_clock();
+  void check_clock();
   void keep_sessions();
-  void look_at_sockets();
+  void check_sockets();
   /// At the start.
   bool has_read_all() const;
   void await_files();
@@ -60,8 +60,8 @@ class Gateway final : public api::GatewayControl {
   void show_lights();
   std::expected<void, std::string> listen(const settings::Team& team);
   void apply_change();
-  std::expected<void, std::string> take_over(admin::Store::Loaded next);
-  void tell_of_settings(const settings::Restarts& restarts, const forward::Tokens& tokens);
+  std::expected<void, std::string> take_over(admin::Store::LoadedSettings next);
+  void log_settings(const settings::Restarts& restarts, const forward::Tokens& tokens);
   void reopen_panel();
   /// std::nullopt: the box's addresses cannot be read, so the last request stays.
   std::optional<clock::Ntp> wanted_ntp() const;

@@ -30,16 +30,17 @@ std::string name_of(const intake::Listen& listen) {
 
 }  // namespace
 
-std::expected<ListenSockets, std::string> ListenSockets::take_over(std::vector<host::Inherited> given) {
+std::expected<ListenSockets, std::string> ListenSockets::take_over(
+    std::vector<host::InheritedDescriptor> given) {
   ListenSockets sockets;
-  for (host::Inherited& each : given) {
-    Held held{.number = ++sockets.last_,
-              .name = std::move(each.name),
-              .socket = std::move(each.descriptor),
-              .at = {}};
+  for (host::InheritedDescriptor& each : given) {
+    HeldSocket held{.number = ++sockets.last_,
+                    .name = std::move(each.name),
+                    .socket = std::move(each.descriptor),
+                    .at = {}};
     held.stored = held.name.starts_with(kStored);
     held.door = !held.stored;
-    if (intake::is_deaf(held.socket.get())) {
+    if (intake::is_orphaned(held.socket.get())) {
       host::log(host::Level::Warning, "unusable socket from systemd: its interface is gone",
                 {{"name", held.name}});
       end(held);
@@ -61,9 +62,10 @@ std::expected<ListenSockets, std::string> ListenSockets::take_over(std::vector<h
   return sockets;
 }
 
-std::expected<std::vector<ListenSockets::Open>, std::string> ListenSockets::open(const settings::Team& team) {
-  for (Held& held : held_) held.wanted = held.door;
-  const bool has_door = std::ranges::any_of(held_, &Held::door);
+std::expected<std::vector<ListenSockets::OpenSocket>, std::string> ListenSockets::open(
+    const settings::Team& team) {
+  for (HeldSocket& held : held_) held.wanted = held.door;
+  const bool has_door = std::ranges::any_of(held_, &HeldSocket::door);
   std::vector<intake::Listen> missing;
   for (const settings::Address& address : team.listen) {
     intake::Listen listen{
@@ -80,9 +82,9 @@ std::expected<std::vector<ListenSockets::Open>, std::string> ListenSockets::open
                      .at = std::move(at),
                      .wanted = true});
   }
-  std::vector<Open> open;
-  for (const Held& held : held_) {
-    if (!held.wanted || intake::is_deaf(held.socket.get())) continue;
+  std::vector<OpenSocket> open;
+  for (const HeldSocket& held : held_) {
+    if (!held.wanted || intake::is_orphaned(held.socket.get())) continue;
     loop::FileDescriptor copy(fcntl(held.socket.get(), F_DUPFD_CLOEXEC, 0));
     if (!copy) return std::unexpected(icd::sentence("copying a socket: ", std::strerror(errno)));
     ADIT_TRY(intake::adopt_listen_socket(copy.get(), {}));
@@ -93,8 +95,8 @@ std::expected<std::vector<ListenSockets::Open>, std::string> ListenSockets::open
 
 ListenSockets::Reach ListenSockets::reach() const {
   Reach reach = Reach::Well;
-  for (const Held& held : held_) {
-    if (held.at.interface.empty() || !intake::is_deaf(held.socket.get())) continue;
+  for (const HeldSocket& held : held_) {
+    if (held.at.interface.empty() || !intake::is_orphaned(held.socket.get())) continue;
     if (if_nametoindex(held.at.interface.c_str()) == 0) continue;
     if (held.door) return Reach::BySystemd;
     reach = Reach::Reopen;
@@ -103,20 +105,20 @@ ListenSockets::Reach ListenSockets::reach() const {
 }
 
 void ListenSockets::settle() {
-  for (const Held& held : held_) {
+  for (const HeldSocket& held : held_) {
     if (!held.wanted) end(held);
   }
-  std::erase_if(held_, [](const Held& held) { return !held.wanted; });
-  for (Held& held : held_) {
+  std::erase_if(held_, [](const HeldSocket& held) { return !held.wanted; });
+  for (HeldSocket& held : held_) {
     if (held.door || std::exchange(held.stored, true)) continue;
     host::store_descriptor(held.name, held.socket.get());
   }
 }
 
 /// systemd has copies of these. The next start opens the others.
-std::vector<host::Inherited> ListenSockets::hand_over() {
-  std::vector<host::Inherited> given;
-  for (Held& held : held_) {
+std::vector<host::InheritedDescriptor> ListenSockets::hand_over() {
+  std::vector<host::InheritedDescriptor> given;
+  for (HeldSocket& held : held_) {
     if (held.door || held.stored) given.push_back({std::move(held.name), std::move(held.socket)});
   }
   held_.clear();
@@ -126,10 +128,10 @@ std::vector<host::Inherited> ListenSockets::hand_over() {
 /// Entries with port 0 at one address get different sockets.
 bool ListenSockets::is_held(const intake::Listen& listen) {
   const std::string name = name_of(listen);
-  for (Held& held : held_) {
+  for (HeldSocket& held : held_) {
     if (held.door ? held.name == kTls || !intake::covers(held.at, listen) : held.wanted || held.name != name)
       continue;
-    if (intake::is_deaf(held.socket.get())) continue;
+    if (intake::is_orphaned(held.socket.get())) continue;
     held.wanted = true;
     return true;
   }
@@ -138,7 +140,7 @@ bool ListenSockets::is_held(const intake::Listen& listen) {
 
 /// "0.0.0.0" cannot be bound beside 10.0.0.1 at the same port.
 void ListenSockets::make_way(std::uint16_t port) {
-  std::erase_if(held_, [port](const Held& held) {
+  std::erase_if(held_, [port](const HeldSocket& held) {
     const bool goes = !held.wanted && held.at.port == port;
     if (goes) end(held);
     return goes;
@@ -146,7 +148,7 @@ void ListenSockets::make_way(std::uint16_t port) {
 }
 
 /// Shuts down all copies at once, because systemd closes its own later.
-void ListenSockets::end(const Held& held) {
+void ListenSockets::end(const HeldSocket& held) {
   shutdown(held.socket.get(), SHUT_RDWR);
   if (!held.door) host::forget_descriptor(held.name);
 }
@@ -154,10 +156,10 @@ void ListenSockets::end(const Held& held) {
 std::expected<void, std::string> Listeners::serve(const settings::Team& team) {
   const Bounds bounds{team.connections, team.connections_per_address};
   auto open = ADIT_TRY(sockets_.open(team));
-  std::vector<Serving> begun;
+  std::vector<ActiveServer> begun;
   std::vector<std::uint64_t> stay;
-  for (ListenSockets::Open& each : open) {
-    const auto same = [&](const Serving& it) { return it.socket == each.number && it.bounds == bounds; };
+  for (ListenSockets::OpenSocket& each : open) {
+    const auto same = [&](const ActiveServer& it) { return it.socket == each.number && it.bounds == bounds; };
     if (std::ranges::any_of(serving_, same)) {
       stay.push_back(each.number);
       continue;
@@ -165,8 +167,8 @@ std::expected<void, std::string> Listeners::serve(const settings::Team& team) {
     auto started = ADIT_TRY(start(std::move(each), bounds));
     begun.push_back(std::move(started));
   }
-  std::vector<Serving> before = std::exchange(serving_, std::move(begun));
-  for (Serving& each : before) {
+  std::vector<ActiveServer> before = std::exchange(serving_, std::move(begun));
+  for (ActiveServer& each : before) {
     if (std::ranges::find(stay, each.socket) != stay.end()) {
       serving_.push_back(std::move(each));
       continue;
@@ -179,8 +181,8 @@ std::expected<void, std::string> Listeners::serve(const settings::Team& team) {
   return {};
 }
 
-std::expected<Listeners::Serving, std::string> Listeners::start(ListenSockets::Open open,
-                                                                const Bounds& bounds) {
+std::expected<Listeners::ActiveServer, std::string> Listeners::start(ListenSockets::OpenSocket open,
+                                                                     const Bounds& bounds) {
   auto server = ADIT_TRY(intake::Server::start(loop_,
                                                {.address = open.at.address,
                                                 .port = open.at.port,
@@ -195,37 +197,37 @@ std::expected<Listeners::Serving, std::string> Listeners::start(ListenSockets::O
             {{"address", open.at.address},
              {"port", std::to_string(open.at.port)},
              {"interface", open.at.interface}});
-  return Serving{open.number, std::move(open.at), bounds, open.by_tls, std::move(server)};
+  return ActiveServer{open.number, std::move(open.at), bounds, open.by_tls, std::move(server)};
 }
 
 network::TeamPorts Listeners::ports() const {
   std::set<std::uint16_t> all;
-  const auto add = [&all](const intake::Bound& at) {
+  const auto add = [&all](const intake::ListenAddress& at) {
     if (!intake::is_loopback(at.address)) all.insert(at.port);
   };
-  for (const Serving& each : serving_) add(each.at);
+  for (const ActiveServer& each : serving_) add(each.at);
   if (serves_tls()) all.insert(network::kTlsPort);
-  for (const Leaving& each : leaving_) add(each.at);
+  for (const DrainingServer& each : leaving_) add(each.at);
   network::TeamPorts ports{{all.begin(), all.end()}};
   ports.ports.resize(std::min(all.size(), network::kMostTeamPorts));
   return ports;
 }
 
 bool Listeners::has(std::uint64_t socket) const {
-  return std::ranges::find(serving_, socket, &Serving::socket) != serving_.end();
+  return std::ranges::find(serving_, socket, &ActiveServer::socket) != serving_.end();
 }
 
 void Listeners::tick() {
   const loop::Instant now = loop_.now();
-  std::erase_if(leaving_, [now](const Leaving& each) {
+  std::erase_if(leaving_, [now](const DrainingServer& each) {
     return each.server->connections() == 0 || (each.until && now >= *each.until);
   });
 }
 
 std::size_t Listeners::sum(std::size_t (intake::Server::*count)() const) const {
   std::size_t sum = 0;
-  for (const Serving& each : serving_) sum += (*each.server.*count)();
-  for (const Leaving& each : leaving_) sum += (*each.server.*count)();
+  for (const ActiveServer& each : serving_) sum += (*each.server.*count)();
+  for (const DrainingServer& each : leaving_) sum += (*each.server.*count)();
   return sum;
 }
 

@@ -31,18 +31,18 @@ class ListenSockets {
  public:
   ListenSockets() = default;
   /// An error: a socket of the unit cannot listen.
-  static std::expected<ListenSockets, std::string> take_over(std::vector<host::Inherited> given);
+  static std::expected<ListenSockets, std::string> take_over(std::vector<host::InheritedDescriptor> given);
 
   /// A copy to serve, and its place.
-  struct Open {
+  struct OpenSocket {
     std::uint64_t number = 0;  // unique in the process
     loop::FileDescriptor socket;
-    intake::Bound at;
+    intake::ListenAddress at;
     bool by_tls = false;  // stunnel connects here
   };
   /// Opens one for each of `team.listen` that no door covers, and the doors. Closes unnamed sockets that are
   /// in the way. An error names the address.
-  std::expected<std::vector<Open>, std::string> open(const settings::Team& team);
+  std::expected<std::vector<OpenSocket>, std::string> open(const settings::Team& team);
 
   /// State of sockets that are bound to an interface. A re-plugged adapter is another interface of the same
   /// name.
@@ -54,17 +54,17 @@ class ListenSockets {
   Reach reach() const;
 
   /// The sockets for the next process, as from systemd. Ends this object.
-  std::vector<host::Inherited> hand_over();
+  std::vector<host::InheritedDescriptor> hand_over();
 
   /// Confirms the last open(): closes the other sockets, and stores these at systemd.
   void settle();
 
  private:
-  struct Held {
+  struct HeldSocket {
     std::uint64_t number = 0;
     std::string name;  // in systemd's store, or of the unit's door
     loop::FileDescriptor socket;
-    intake::Bound at;
+    intake::ListenAddress at;
     bool door = false;
     bool stored = false;
     bool wanted = false;
@@ -72,9 +72,9 @@ class ListenSockets {
 
   bool is_held(const intake::Listen& listen);
   void make_way(std::uint16_t port);
-  static void end(const Held& held);
+  static void end(const HeldSocket& held);
 
-  std::vector<Held> held_;
+  std::vector<HeldSocket> held_;
   std::uint64_t last_ = 0;
 };
 
@@ -84,7 +84,7 @@ class Listeners {
  public:
   /// All outlive this. `ended`: for each connection that was ended early.
   Listeners(loop::Loop& loop, ListenSockets& sockets, intake::Handler& handler, intake::TokenGuesses& guesses,
-            std::function<void(intake::Ended why, const std::string& address)> ended)
+            std::function<void(intake::CloseReason why, const std::string& address)> ended)
       : loop_(loop), sockets_(sockets), handler_(handler), guesses_(guesses), ended_(std::move(ended)) {}
 
   /// Serves these. An error names the address. Sockets in the way may be closed then: call again with the old
@@ -96,12 +96,12 @@ class Listeners {
   void tick();
   /// Accepts no new connections.
   void stop() {
-    for (const Serving& each : serving_) each.server->stop_listening();
+    for (const ActiveServer& each : serving_) each.server->stop_listening();
   }
 
   bool serves() const { return !serving_.empty(); }
   /// True if the team can use TLS at port network::kTlsPort.
-  bool serves_tls() const { return std::ranges::any_of(serving_, &Serving::by_tls); }
+  bool serves_tls() const { return std::ranges::any_of(serving_, &ActiveServer::by_tls); }
   /// Ports of the served sockets that other machines can reach, also while their last clients are served.
   network::TeamPorts ports() const;
   std::size_t connections() const { return sum(&intake::Server::connections); }
@@ -115,20 +115,20 @@ class Listeners {
     std::uint32_t connections = 0, per_address = 0;
     friend bool operator==(const Bounds&, const Bounds&) = default;
   };
-  struct Serving {
-    std::uint64_t socket = 0;  // ListenSockets::Open::number
-    intake::Bound at;
+  struct ActiveServer {
+    std::uint64_t socket = 0;  // ListenSockets::OpenSocket::number
+    intake::ListenAddress at;
     Bounds bounds;
     bool by_tls = false;
     std::unique_ptr<intake::Server> server;
   };
   /// Accepts no new connections.
-  struct Leaving {
-    intake::Bound at;
+  struct DrainingServer {
+    intake::ListenAddress at;
     std::unique_ptr<intake::Server> server;
     std::optional<loop::Instant> until;  // nullopt: its socket has a new server with other bounds
   };
-  std::expected<Serving, std::string> start(ListenSockets::Open open, const Bounds& bounds);
+  std::expected<ActiveServer, std::string> start(ListenSockets::OpenSocket open, const Bounds& bounds);
   bool has(std::uint64_t socket) const;
   std::size_t sum(std::size_t (intake::Server::*count)() const) const;
 
@@ -136,10 +136,10 @@ class Listeners {
   ListenSockets& sockets_;
   intake::Handler& handler_;
   intake::TokenGuesses& guesses_;
-  const std::function<void(intake::Ended why, const std::string& address)> ended_;
+  const std::function<void(intake::CloseReason why, const std::string& address)> ended_;
   loop::Duration longest_{};
-  std::vector<Serving> serving_;
-  std::vector<Leaving> leaving_;
+  std::vector<ActiveServer> serving_;
+  std::vector<DrainingServer> leaving_;
 };
 
 }  // namespace adit::gateway

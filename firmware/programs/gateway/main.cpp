@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
   ::prctl(PR_SET_NAME, "aditd");  // after exec of /proc/self/exe it is "exe"
   // Each chunk of a map is a mapping, which returns to the system when freed.
   ::mallopt(M_MMAP_THRESHOLD, int{adit::icd::ChunkedBytes::kChunk});
-  adit::loop::tell_of_caught([](const char* where, const char* what) {
+  adit::loop::set_exception_logger([](const char* where, const char* what) {
     adit::host::log(adit::host::Level::Error, "unhandled exception", {{"ended", where}, {"why", what}});
   });
   adit::loop::end_by_uncaught();

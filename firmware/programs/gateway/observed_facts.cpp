@@ -6,7 +6,7 @@
 
 namespace adit::gateway {
 
-void Crowding::on_ended(intake::Ended why, const std::string& address, loop::Instant now) {
+void Crowding::on_ended(intake::CloseReason why, const std::string& address, loop::Instant now) {
   Kind& kind = kinds_[static_cast<std::size_t>(why)];
   if (now - kind.last >= kRecent) kind.by_address.clear();
   kind.last = now;
@@ -18,12 +18,12 @@ void Crowding::on_ended(intake::Ended why, const std::string& address, loop::Ins
 std::vector<facts::Crowd> Crowding::crowds(loop::Instant now) const {
   using enum facts::Crowd::Kind;
   std::vector<facts::Crowd> crowds;
-  for (const intake::Ended why : kTold) {
+  for (const intake::CloseReason why : kTold) {
     if (at(why).count == 0 || now - at(why).last >= kRecent) continue;
-    const auto kind = why == intake::Ended::NoRoom       ? NoRoom
-                      : why == intake::Ended::WrongToken ? WrongToken
-                      : why == intake::Ended::NoToken    ? NoToken
-                                                         : Unauthenticated;
+    const auto kind = why == intake::CloseReason::NoRoom       ? NoRoom
+                      : why == intake::CloseReason::WrongToken ? WrongToken
+                      : why == intake::CloseReason::NoToken    ? NoToken
+                                                               : Unauthenticated;
     crowds.push_back({kind, most_of(why)});
   }
   return crowds;
@@ -31,7 +31,7 @@ std::vector<facts::Crowd> Crowding::crowds(loop::Instant now) const {
 
 std::vector<Crowding::Line> Crowding::to_log(loop::Instant now) {
   std::vector<Line> lines;
-  for (const intake::Ended why : kTold) {
+  for (const intake::CloseReason why : kTold) {
     Kind& kind = kinds_[static_cast<std::size_t>(why)];
     if (kind.count == kind.logged || now < kind.log_at) continue;
     lines.push_back({sentence(why), kind.count - kind.logged});
@@ -41,22 +41,22 @@ std::vector<Crowding::Line> Crowding::to_log(loop::Instant now) {
   return lines;
 }
 
-const std::string& Crowding::most_of(intake::Ended why) const {
+const std::string& Crowding::most_of(intake::CloseReason why) const {
   return std::ranges::max_element(at(why).by_address, {}, [](const auto& each) { return each.second; })
       ->first;
 }
 
-std::string Crowding::sentence(intake::Ended why) const {
+std::string Crowding::sentence(intake::CloseReason why) const {
   const std::string& most = most_of(why);
-  if (why == intake::Ended::NoRoom) {
+  if (why == intake::CloseReason::NoRoom) {
     return "requests rejected with 503, most from " + most +
            ": too many requests at once (team.connections, team.connections_per_address)";
   }
-  if (why == intake::Ended::WrongToken) {
+  if (why == intake::CloseReason::WrongToken) {
     return "requests with wrong tokens, most from " + most +
            ": robots with an old token, or an attacker; right tokens are accepted";
   }
-  if (why == intake::Ended::NoToken) {
+  if (why == intake::CloseReason::NoToken) {
     return "messages without a token, most from " + most + ": set the team's token in that client";
   }
   return "too many unauthenticated connections, most from " + most + ": the oldest are closed for new ones";
@@ -96,19 +96,19 @@ facts::EndpointRow endpoint_row(const char* name, const settings::Address& addre
 }
 
 /// One robot's activities.
-struct OfRobot {
+struct RobotActivity {
   std::uint64_t accepted = 0, ended = 0;  // ended: delivered or rejected
   journal::Heard heard;
 };
 
 /// `now`: stamp clock; `time`: the activities' time of day.
-std::map<std::string, OfRobot> rows_by_robot(const std::vector<facts::ActivityRow>& activities, double now,
-                                             api::Time time) {
-  std::map<std::string, OfRobot> all;
+std::map<std::string, RobotActivity> rows_by_robot(const std::vector<facts::ActivityRow>& activities,
+                                                   double now, api::Time time) {
+  std::map<std::string, RobotActivity> all;
   for (const facts::ActivityRow& row : activities) {
     const auto kind = std::ranges::find(forward::kHeardKinds, row.kind);
     if (kind == std::end(forward::kHeardKinds)) continue;
-    OfRobot& its = all[row.robot];
+    RobotActivity& its = all[row.robot];
     its.accepted += row.accepted;
     its.ended += row.forwarded + row.refused_upstream;
     its.heard.robot = row.robot;
@@ -124,22 +124,22 @@ std::map<std::string, OfRobot> rows_by_robot(const std::vector<facts::ActivityRo
 
 }  // namespace
 
-void ObservedFacts::carry_on(const forward::Flow& flow, double now) {
+void ObservedFacts::restore(const forward::Flow& flow, double now) {
   const auto all = rows_by_robot(flow.activities(), now, now);
   for (const auto& [robot, heard] : flow.heard_before()) {
     const auto its = all.find(robot);
     if (robot.empty() || now - heard.last > alarms::Habits::Rules{}.away) continue;
-    habits_.carry_on(robot,
-                     {.messages = static_cast<int>(heard.messages), .gap = heard.gap, .last = heard.last},
-                     its == all.end() ? 0 : its->second.accepted);
+    habits_.restore(robot,
+                    {.messages = static_cast<int>(heard.messages), .gap = heard.gap, .last = heard.last},
+                    its == all.end() ? 0 : its->second.accepted);
   }
 }
 
-void ObservedFacts::look(forward::Flow& flow, const settings::Settings& settings,
-                         const std::vector<facts::ActivityRow>& activities, double now, facts::Time time) {
-  scoring_.look({sample_connection(flow.scoring().channel())}, now);
-  mapping_.look({sample_connection(flow.maps().channel()), sample_connection(flow.telemetry().channel())},
-                now);
+void ObservedFacts::update(forward::Flow& flow, const settings::Settings& settings,
+                           const std::vector<facts::ActivityRow>& activities, double now, facts::Time time) {
+  scoring_.update({sample_connection(flow.scoring().channel())}, now);
+  mapping_.update({sample_connection(flow.maps().channel()), sample_connection(flow.telemetry().channel())},
+                  now);
   for (auto& [robot, its] : rows_by_robot(activities, now, time)) {
     habits_.on_count(robot, its.accepted, its.heard.last);
     const std::uint64_t told = its.accepted + its.ended;
@@ -154,7 +154,7 @@ void ObservedFacts::look(forward::Flow& flow, const settings::Settings& settings
   for (const auto& [robot, at] : flow.delivered_scene().earlier_poses()) {
     if (time - at < alarms::Habits::Rules{}.away) habits_.expect(robot, now);
   }
-  growth_.look(flow.maps().queued_bytes(), settings.queues.map_bytes, now);
+  growth_.update(flow.maps().queued_bytes(), settings.queues.map_bytes, now);
 }
 
 std::vector<facts::EndpointRow> ObservedFacts::endpoints(const forward::Flow& flow,

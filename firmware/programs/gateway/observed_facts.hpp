@@ -27,8 +27,8 @@ class Crowding {
     std::uint64_t times;  // since the last log line
   };
 
-  void on_ended(intake::Ended why, const std::string& address, loop::Instant now);
-  std::uint64_t count(intake::Ended why) const { return at(why).count; }
+  void on_ended(intake::CloseReason why, const std::string& address, loop::Instant now);
+  std::uint64_t count(intake::CloseReason why) const { return at(why).count; }
   /// Of the last kRecent.
   std::vector<facts::Crowd> crowds(loop::Instant now) const;
   /// Lines that are due.
@@ -40,12 +40,12 @@ class Crowding {
     loop::Instant last{}, log_at{};
     std::map<std::string, std::uint64_t> by_address;  // in the present crowd
   };
-  static constexpr std::array kTold{intake::Ended::NoRoom, intake::Ended::GaveWay, intake::Ended::WrongToken,
-                                    intake::Ended::NoToken};
+  static constexpr std::array kTold{intake::CloseReason::NoRoom, intake::CloseReason::GaveWay,
+                                    intake::CloseReason::WrongToken, intake::CloseReason::NoToken};
 
-  const Kind& at(intake::Ended why) const { return kinds_[static_cast<std::size_t>(why)]; }
-  std::string sentence(intake::Ended why) const;
-  const std::string& most_of(intake::Ended why) const;
+  const Kind& at(intake::CloseReason why) const { return kinds_[static_cast<std::size_t>(why)]; }
+  std::string sentence(intake::CloseReason why) const;
+  const std::string& most_of(intake::CloseReason why) const;
 
   std::array<Kind, intake::kEndedKinds> kinds_;
 };
@@ -55,10 +55,10 @@ class Crowding {
 class ObservedFacts {
  public:
   /// Call once a second. `time`: time of day.
-  void look(forward::Flow& flow, const settings::Settings& settings,
-            const std::vector<facts::ActivityRow>& activities, double now, facts::Time time);
+  void update(forward::Flow& flow, const settings::Settings& settings,
+              const std::vector<facts::ActivityRow>& activities, double now, facts::Time time);
   /// Call after the flow's start and before any answer: takes the robots from before.
-  void carry_on(const forward::Flow& flow, double now);
+  void restore(const forward::Flow& flow, double now);
   /// The endpoint or its token has changed.
   void forget_scoring() { scoring_.forget(); }
   void forget_mapping() { mapping_.forget(); }
@@ -68,7 +68,7 @@ class ObservedFacts {
                                             const settings::CommandPost& command_post, double now,
                                             facts::Time time) const;
   facts::Habits habits(const settings::Alarms& rules, double now) const;
-  bool queue_grows(double now) const { return growth_.grows(now); }
+  bool is_queue_growing(double now) const { return growth_.grows(now); }
 
  private:
   alarms::EndpointWatch scoring_, mapping_{true};

@@ -3,22 +3,22 @@
 namespace adit::gateway {
 
 command_line::Program command_line_of(Options& options) {
-  using command_line::Wanted;
+  using command_line::Presence;
   return {
       .name = "aditd",
       .about = "Adit's gateway between a robot team and the Command Post.",
       .rows = {{"--settings", "FILE",
                 "read the settings (JSON, version 1) from FILE, unless the state directory holds saved ones; "
                 "`adit check FILE` lists the errors in a file",
-                &options.settings, Wanted::Always},
+                &options.settings, Presence::Required},
                {"--secrets", "DIR",
                 "read scoring.token, mapping.token, team.token and label.code from DIR, if present; only "
                 "their owner may have access (mode 0600)",
-                &options.secrets, Wanted::Always},
+                &options.secrets, Presence::Required},
                {"--state", "DIR",
                 "keep the ledger of reports in DIR, and the set-up from the page: settings.json and "
                 "secrets/, which replace the two above; create DIR if it is absent",
-                &options.state, Wanted::Always},
+                &options.state, Presence::Required},
                {"--network", "DIR", "read the status of adit-network from DIR", &options.network},
                {"--watch", "DIR",
                 "read from DIR which other machines use the box's addresses (adit-network --watch)",
@@ -50,7 +50,7 @@ command_line::Program command_line_of(Options& options) {
           "Queued messages and sessions survive a restart in $RUNTIME_DIRECTORY, or in the state directory "
           "if that is not set.\nExit status: 0 after SIGTERM or SIGINT, 1 if aditd cannot start (the log "
           "says why), 2 if the command line is wrong.",
-      .empty = command_line::Empty::Taken,
+      .empty = command_line::EmptyValue::Accepted,
   };
 }
 

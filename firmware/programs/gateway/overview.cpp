@@ -66,15 +66,15 @@ std::vector<api::ColourRow> chosen_colours(const std::vector<settings::Robot>& r
 Overview::Overview(const Rooms& rooms, loop::Writer& writer)
     : rooms_(rooms), roster_(rooms.settings.robots), acknowledged_(rooms.parts.options.state, writer) {}
 
-void Overview::carry_on() {
-  observed_.carry_on(rooms_.flow, rooms_.loop.stamp_now());
+void Overview::restore() {
+  observed_.restore(rooms_.flow, rooms_.loop.stamp_now());
   board_.remember(acknowledged_.read(), rooms_.loop.wall_now());
 }
 
-void Overview::look() {
+void Overview::update() {
   notices_ = box::read_notices(rooms_.parts.options.notices);
   auto activities = rooms_.flow.activities();
-  observed_.look(rooms_.flow, rooms_.settings, activities, rooms_.loop.stamp_now(), rooms_.loop.wall_now());
+  observed_.update(rooms_.flow, rooms_.settings, activities, rooms_.loop.stamp_now(), rooms_.loop.wall_now());
   take_snapshot(std::move(activities));
   // At a stop conditions end that are not cleared.
   if (!rooms_.flow.is_ending()) acknowledged_.keep(board_.acknowledgements());
@@ -126,7 +126,7 @@ void Overview::on_posted(const std::string& robot) {
   if (roster_.on_posted(robot, rooms_.loop.now())) host::log(host::Level::Warning, roster_.sentence(robot));
 }
 
-void Overview::on_ended(intake::Ended why, const std::string& address) {
+void Overview::on_ended(intake::CloseReason why, const std::string& address) {
   crowding_.on_ended(why, address, rooms_.loop.now());
   log_crowding();
 }
@@ -221,14 +221,14 @@ std::string Overview::status_line() const {
 
 std::vector<facts::ReportRow> Overview::reports(std::int64_t after, std::size_t most) const {
   auto rows = rows_after(rooms_.flow.reports(), after, most);
-  for (facts::ReportRow& row : rows) tell_time_of_day(row, rooms_.flow.clocks());
+  for (facts::ReportRow& row : rows) set_time_of_day(row, rooms_.flow.clocks());
   return rows;
 }
 
 std::optional<api::ReportDetail> Overview::report(std::int64_t number) const {
   auto detail = detail_of(rooms_.flow.reports(), rooms_.parts.ledger, number);
   if (!detail) return detail;
-  tell_time_of_day(detail->row, rooms_.flow.clocks());
+  set_time_of_day(detail->row, rooms_.flow.clocks());
   for (auto& step : detail->history) step.at = rooms_.flow.clocks().time_of_day(step.at);
   return detail;
 }
@@ -236,13 +236,13 @@ std::optional<api::ReportDetail> Overview::report(std::int64_t number) const {
 void Overview::add_to(api::Usage& usage) const {
   usage.connections += rooms_.listeners.connections();
   usage.unauthenticated = rooms_.listeners.unauthenticated_connections();
-  usage.ended = {{"no_room", crowding_.count(intake::Ended::NoRoom)},
-                 {"gave_way", crowding_.count(intake::Ended::GaveWay)},
-                 {"idle", crowding_.count(intake::Ended::Idle)},
-                 {"slow", crowding_.count(intake::Ended::Slow)}};
-  usage.wrong_tokens = crowding_.count(intake::Ended::WrongToken);
+  usage.ended = {{"no_room", crowding_.count(intake::CloseReason::NoRoom)},
+                 {"gave_way", crowding_.count(intake::CloseReason::GaveWay)},
+                 {"idle", crowding_.count(intake::CloseReason::Idle)},
+                 {"slow", crowding_.count(intake::CloseReason::Slow)}};
+  usage.wrong_tokens = crowding_.count(intake::CloseReason::WrongToken);
   usage.sent_bytes = rooms_.flow.sent_bytes();
-  usage.exceptions = loop::caught_so_far();
+  usage.exceptions = loop::exception_count();
   usage.rejected_dropped = rooms_.flow.rejected_store().dropped_count();
   usage.refused = rooms_.flow.counts().refused_counts();
 }
@@ -259,7 +259,7 @@ facts::Traffic Overview::traffic(std::vector<facts::ActivityRow> activities) con
       .registered = roster_.names(),
       .queued = rooms_.flow.maps().queued_bytes(),
       .queue_room = rooms_.settings.queues.map_bytes,
-      .queue_grows = observed_.queue_grows(steady)};
+      .queue_grows = observed_.is_queue_growing(steady)};
   traffic.turn = static_cast<double>(std::ranges::count_if(traffic.activities, &facts::ActivityRow::is_map)) /
                  rooms_.settings.command_post.rates.map_hz;
   return traffic;
@@ -278,8 +278,8 @@ facts::Reports Overview::reports() const {
                          .elsewhere = all.waiting_elsewhere(),
                          .run_renamed = all.runs().name_trouble(),
                          .rejected = rooms_.flow.rejected_store().rows()};
-  for (facts::ReportRow& row : reports.rows) tell_time_of_day(row, rooms_.flow.clocks());
-  for (const dispatch::Report* const lost : all.lost_here()) reports.lost_here.insert(lost->number);
+  for (facts::ReportRow& row : reports.rows) set_time_of_day(row, rooms_.flow.clocks());
+  for (const dispatch::Report* const lost : all.lost_reports()) reports.lost_here.insert(lost->number);
   if (const auto& run = rooms_.flow.scoring().run()) reports.left = run->remaining_reports;
   if (all.run().unreliable != dispatch::Run::kCountsStand) reports.run_unreliable = all.run().unreliable;
   return reports;

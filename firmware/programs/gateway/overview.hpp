@@ -44,7 +44,7 @@ struct Parts {
   admin::FactoryReset& reset;  // outlives the gateway
   admin::Takeover& takeover;   // outlives the gateway
   ListenSockets& sockets;      // outlives the gateway
-  admin::Store::Loaded loaded;
+  admin::Store::LoadedSettings loaded;
   std::string trouble;    // why other settings are in use than wanted, or ""
   std::string put_aside;  // queued messages put aside, and why; or ""
   std::string stuck;      // why a take-over is unfinished and the box stands by, or ""
@@ -107,20 +107,20 @@ class Overview final : public api::Source {
   Overview(const Rooms& rooms, loop::Writer& writer);
 
   /// Call after the flow's start and before any answer.
-  void carry_on();
+  void restore();
   /// Call once a second. Also reads the notices, logs rejected connections, and stores acknowledgements.
-  void look();
+  void update();
   std::expected<void, std::string> acknowledge(const std::string& id);
   /// Shows the last snapshot, and logs the end of set-up.
   void show_on(box::Lights& lights) const;
   /// A robot's message was accepted.
   void on_posted(const std::string& robot);
   /// A connection of the team was rejected or closed.
-  void on_ended(intake::Ended why, const std::string& address);
+  void on_ended(intake::CloseReason why, const std::string& address);
   /// Settings or tokens have changed.
   void on_settings_changed(const settings::Restarts& restarts);
   /// The time of day was set ahead by `seconds`.
-  void wall_was_set(double seconds) { board_.move(seconds); }
+  void on_wall_set(double seconds) { board_.move(seconds); }
 
   /// A line for systemd.
   std::string status_line() const;
@@ -156,7 +156,7 @@ class Overview final : public api::Source {
   alarms::Board board_;
   api::RunView view_;                          // the last snapshot
   std::vector<alarms::Condition> conditions_;  // its alarms
-  admin::AcknowledgedFile acknowledged_;
+  admin::AcknowledgementFile acknowledged_;
   mutable ReadAnswers answers_;                 // of the view's reports
   std::map<std::string, std::string> notices_;  // box/this_box.hpp
 };

@@ -92,7 +92,7 @@ std::vector<facts::ReportRow> latest_rows(const dispatch::Reports& reports, std:
   return rows;
 }
 
-void tell_time_of_day(facts::ReportRow& row, const forward::Clocks& clocks) {
+void set_time_of_day(facts::ReportRow& row, const forward::Clocks& clocks) {
   row.received = clocks.time_of_day(row.received);
   row.changed = clocks.time_of_day(row.changed);
   if (row.sends_at) row.sends_at = clocks.time_of_day(*row.sends_at);

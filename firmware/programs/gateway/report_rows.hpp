@@ -42,7 +42,7 @@ std::vector<const dispatch::Report*> latest_of(const dispatch::ReportBook& book,
 std::vector<facts::ReportRow> latest_rows(const dispatch::Reports& reports, std::size_t most,
                                           ReadAnswers& answers);
 
-void tell_time_of_day(facts::ReportRow& row, const forward::Clocks& clocks);
+void set_time_of_day(facts::ReportRow& row, const forward::Clocks& clocks);
 
 /// nullopt: no such report.
 std::optional<api::ReportDetail> detail_of(const dispatch::Reports& reports, const ledger::Ledger& ledger,

@@ -107,7 +107,7 @@ int Service::run(int (*count_faults)(const char* file) noexcept) {
   host::log_failure(host::Level::Error, "cannot create the state directory", make_folder(options_.state));
   if (const int error = count_faults(faults_file().c_str()); error != 0)
     host::log(host::Level::Error, "faults are not counted, and no queue is put aside after them",
-              {{"why", host::trouble(faults_file(), error)}});
+              {{"why", host::path_error(faults_file(), error)}});
   for (const std::string& folder :
        {options_.state, options_.state + '/' + settings::kSecretsFolder, runtime_folder(options_)}) {
     host::remove_unwritten(folder);
@@ -170,7 +170,7 @@ std::expected<bool, std::string> Service::run_gateway() {
   auto loaded = ADIT_TRY(store_.load());
   auto ledger = open_ledger(options_);
   if (!ledger) return std::unexpected(ledger.error().what);
-  auto wear = host::wear_of(options_.state, options_.block);
+  auto wear = host::read_wear(options_.state, options_.block);
   if (!wear) host::log(host::Level::Warning, "the disk's health is unknown", {{"why", wear.error()}});
   auto known = box::read_board(options_.board);
   const std::string runtime = runtime_folder(options_);

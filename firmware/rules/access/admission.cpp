@@ -12,8 +12,8 @@
 namespace adit::access {
 namespace {
 
+using icd::equals_ignoring_case;
 using icd::refuse;
-using icd::same_but_for_case;
 
 bool is_address(int family, std::string_view text) {
   unsigned char bytes[sizeof(in6_addr)];
@@ -24,7 +24,7 @@ bool is_address(int family, std::string_view text) {
 bool is_multicast_name(std::string_view name) {
   if (name.ends_with('.')) name.remove_suffix(1);
   constexpr std::string_view kEnd = ".local";
-  if (name.size() <= kEnd.size() || !same_but_for_case(name.substr(name.size() - kEnd.size()), kEnd))
+  if (name.size() <= kEnd.size() || !equals_ignoring_case(name.substr(name.size() - kEnd.size()), kEnd))
     return false;
   return std::ranges::all_of(name.substr(0, name.size() - kEnd.size()),
                              [](char letter) { return icd::is_letter_or_digit(letter) || letter == '-'; });
@@ -54,14 +54,14 @@ bool names_this_box(std::string_view host) {
   }
   const std::string_view name = host.substr(0, host.find(':'));
   if (!is_port(host.substr(name.size()))) return false;
-  return same_but_for_case(name, "localhost") || is_multicast_name(name) || is_address(AF_INET, name);
+  return equals_ignoring_case(name, "localhost") || is_multicast_name(name) || is_address(AF_INET, name);
 }
 
 bool is_same_origin(std::string_view origin, std::string_view host, bool is_secure) {
   for (const std::string_view scheme : {"https://", "http://"}) {
     if (is_secure && scheme != "https://") break;
-    if (same_but_for_case(origin.substr(0, scheme.size()), scheme))
-      return same_but_for_case(origin.substr(scheme.size()), host);
+    if (equals_ignoring_case(origin.substr(0, scheme.size()), scheme))
+      return equals_ignoring_case(origin.substr(scheme.size()), host);
   }
   return false;
 }

@@ -16,14 +16,14 @@ constexpr std::string_view kBegin = "-----BEGIN ", kEnd = "-----END ", kDashes =
 constexpr std::string_view kCertificate = "CERTIFICATE", kKey = "PRIVATE KEY";
 
 /// The base64 of a block, without its first and last line.
-std::string_view inside(std::string_view block) {
+std::string_view pem_body(std::string_view block) {
   const std::size_t first = block.find('\n'), last = block.rfind(kEnd);
   return last == std::string_view::npos || first >= last ? "" : block.substr(first, last - first);
 }
 
 /// Bytes of the DER, or nothing.
 std::vector<std::uint8_t> der_of(std::string_view block) {
-  std::string digits(inside(block));
+  std::string digits(pem_body(block));
   std::erase_if(digits, [](char each) { return icd::trim({&each, 1}).empty(); });
   std::vector<std::uint8_t> der(digits.size());
   codec::Base64Decoder decoder;
@@ -40,7 +40,7 @@ std::vector<std::uint8_t> der_of(std::string_view block) {
 }  // namespace
 
 static constexpr std::string_view kWhatWords[] = {"keep", "make", "take"};  // in the order of What
-static constexpr auto& words_of(CertificateRequest::What /*of*/) {
+static constexpr auto& words_of(CertificateRequest::Command /*of*/) {
   return kWhatWords;
 }
 

@@ -35,13 +35,13 @@ inline constexpr const char* kUploadedFile = "certificate.pem";
 inline constexpr std::size_t kLargestUpload = 65536;  // bytes
 
 struct CertificateRequest {
-  enum class What : std::uint8_t {
+  enum class Command : std::uint8_t {
     Keep,  // make one if there is none, or if it is damaged
     Make,  // replace it by a new one
     Take,  // replace it by the uploaded one
   };
   std::string nonce = "";  // codec::is_nonce()
-  What what = What::Keep;
+  Command what = Command::Keep;
   std::string address = "";  // of the box, for a new one; or ""
   static const codec::Row kRow;
 };

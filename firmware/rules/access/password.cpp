@@ -14,7 +14,7 @@ namespace adit::access {
 namespace {
 
 /// Wipes libcrypt's working memory (32 KiB), because it contains the password.
-struct Wiped {
+struct WipingDeleter {
   void operator()(crypt_data* data) const {
     explicit_bzero(data, sizeof *data);
     delete data;
@@ -23,7 +23,7 @@ struct Wiped {
 
 /// "" if libcrypt fails.
 std::string hash_password(const std::string& password, const std::string& setting) {
-  const std::unique_ptr<crypt_data, Wiped> data(new crypt_data{});
+  const std::unique_ptr<crypt_data, WipingDeleter> data(new crypt_data{});
   const char* const text = crypt_r(password.c_str(), setting.c_str(), data.get());
   return text == nullptr || *text == '*' ? "" : text;  // "*0": failure (crypt(3))
 }

@@ -107,7 +107,7 @@ const Session& Sessions::begin(const Secret& id, const Secret& csrf, Role role, 
                        .seen = now,
                        .address = caller.address,
                        .agent = plain(caller.agent)});
-  tell();
+  notify_changed();
   return sessions_.back();
 }
 
@@ -132,13 +132,13 @@ bool Sessions::touch(std::uint64_t number, Instant now) {
 bool Sessions::end(std::uint64_t number) {
   const bool ended =
       std::erase_if(sessions_, [number](const Session& each) { return each.number == number; }) > 0;
-  if (ended) tell();
+  if (ended) notify_changed();
   return ended;
 }
 
 void Sessions::end_all(Role role, std::uint64_t but) {
   std::erase_if(sessions_, [=](const Session& each) { return each.role == role && each.number != but; });
-  tell();
+  notify_changed();
 }
 
 std::vector<Session> Sessions::all(Instant now) {

@@ -69,7 +69,7 @@ class Sessions {
 
  private:
   void forget_ended(Instant now);
-  void tell() const {
+  void notify_changed() const {
     if (changed_) changed_();
   }
 

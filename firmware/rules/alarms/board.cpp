@@ -17,31 +17,31 @@ using codec::Value;
 constexpr std::int64_t kVersion = 1;
 
 constexpr codec::Member kMembers[] = {
-    member<&Acknowledged::id>("id"),         member<&Acknowledged::severity>("severity"),
-    member<&Acknowledged::degree>("degree"), member<&Acknowledged::what>("what"),
-    member<&Acknowledged::why>("why"),       member<&Acknowledged::at>("at", "seconds since 1970"),
+    member<&Acknowledgement::id>("id"),         member<&Acknowledgement::severity>("severity"),
+    member<&Acknowledgement::degree>("degree"), member<&Acknowledgement::what>("what"),
+    member<&Acknowledgement::why>("why"),       member<&Acknowledgement::at>("at", "seconds since 1970"),
 };
 
 }  // namespace
 
-constexpr codec::Row Acknowledged::kRow = codec::complete<Acknowledged>({"", kMembers});
+constexpr codec::Row Acknowledgement::kRow = codec::complete<Acknowledgement>({"", kMembers});
 
-std::string write_acknowledged(const std::vector<Acknowledged>& all) {
+std::string write_acknowledged(const std::vector<Acknowledgement>& all) {
   return codec::write_json({Value::Object{{"version", {kVersion}}, {"acknowledged", codec::json(all)}}}) +
          '\n';
 }
 
-std::expected<std::vector<Acknowledged>, std::string> read_acknowledged(std::string_view json) {
+std::expected<std::vector<Acknowledgement>, std::string> read_acknowledged(std::string_view json) {
   const auto root = ADIT_TRY(codec::parse_json(json));
   codec::Reading reading;
   const codec::Field file(root, reading);
   const codec::Field version = file.member("version");
   if (version.integer<std::int64_t>() != kVersion) version.refuse("expected ", kVersion);
-  std::vector<Acknowledged> all;
-  codec::KindOf<std::vector<Acknowledged>>::read(file.member("acknowledged"), all);
+  std::vector<Acknowledgement> all;
+  codec::KindOf<std::vector<Acknowledgement>>::read(file.member("acknowledged"), all);
   const auto read = reading.outcome(true);
   if (!read) return std::unexpected(read.error().sentence);
-  if (all.size() > Acknowledged::kMost) return std::unexpected("acknowledged: too many");
+  if (all.size() > Acknowledgement::kMost) return std::unexpected("acknowledged: too many");
   return all;
 }
 
@@ -59,7 +59,7 @@ EndedAlarm Board::to_ended(const KnownCondition& known, double now) {
           .until = now};
 }
 
-void Board::see(KnownCondition& known, double now) {
+void Board::acknowledge_as_shown(KnownCondition& known, double now) {
   const Condition& condition = known.condition;
   known.acknowledged = true;
   known.seen = {.id = condition.id,
@@ -85,7 +85,8 @@ void Board::update(const std::vector<Condition>& conditions, double now) {
         condition.severity > known.worst.severity ||
         (condition.severity == known.worst.severity && condition.degree < known.worst.degree);
     if (came || !is_better) known.worst = condition;
-    if (known.acknowledged && condition.degree < known.seen.degree) see(known, known.seen.at);
+    if (known.acknowledged && condition.degree < known.seen.degree)
+      acknowledge_as_shown(known, known.seen.at);
   }
   for (auto each = known_.begin(); each != known_.end();) {
     if (here.contains(each->first)) {
@@ -94,39 +95,39 @@ void Board::update(const std::vector<Condition>& conditions, double now) {
     }
     over_.push_front(to_ended(each->second, now));
     if (over_.size() > kMostOver) over_.pop_back();
-    std::erase_if(before_, [&](const Acknowledged& before) { return before.id == each->first; });
+    std::erase_if(before_, [&](const Acknowledgement& before) { return before.id == each->first; });
     each = known_.erase(each);
   }
-  take_up_before(conditions, now);
+  restore_acknowledged(conditions, now);
 }
 
-void Board::remember(std::vector<Acknowledged> before, double now) {
+void Board::remember(std::vector<Acknowledgement> before, double now) {
   before_ = std::move(before);
-  std::erase_if(before_, [now](const Acknowledged& each) {
-    return each.at > now || now - each.at > Acknowledged::kHolds;
+  std::erase_if(before_, [now](const Acknowledgement& each) {
+    return each.at > now || now - each.at > Acknowledgement::kHolds;
   });
-  waits_until_ = now + Acknowledged::kWaitsFor;
+  waits_until_ = now + Acknowledgement::kWaitsFor;
 }
 
-void Board::take_up_before(const std::vector<Condition>& conditions, double now) {
+void Board::restore_acknowledged(const std::vector<Condition>& conditions, double now) {
   if (now > waits_until_) before_.clear();
   for (const Condition& condition : conditions) {
-    const auto before = std::ranges::find(before_, condition.id, &Acknowledged::id);
+    const auto before = std::ranges::find(before_, condition.id, &Acknowledgement::id);
     if (before == before_.end()) continue;
     KnownCondition& known = known_.at(condition.id);
     const bool worse = condition.severity < before->severity || condition.degree > before->degree;
     const bool same = condition.severity == before->severity && condition.degree == before->degree &&
                       condition.headline.now() == before->what && condition.why == before->why;
-    if (same) see(known, before->at);
+    if (same) acknowledge_as_shown(known, before->at);
     if (same || worse || known.acknowledged) before_.erase(before);
   }
 }
 
-std::vector<Acknowledged> Board::acknowledgements() const {
-  std::vector<Acknowledged> all = before_;
+std::vector<Acknowledgement> Board::acknowledgements() const {
+  std::vector<Acknowledgement> all = before_;
   for (const auto& [id, known] : known_) {
-    const bool fits = known.seen.what.size() + known.seen.why.size() <= Acknowledged::kLongest;
-    if (known.acknowledged && fits && all.size() < Acknowledged::kMost) all.push_back(known.seen);
+    const bool fits = known.seen.what.size() + known.seen.why.size() <= Acknowledgement::kLongest;
+    if (known.acknowledged && fits && all.size() < Acknowledgement::kMost) all.push_back(known.seen);
   }
   return all;
 }
@@ -137,7 +138,7 @@ void Board::move(double seconds) {
     known.worst_since += seconds;
     known.seen.at += seconds;
   }
-  for (Acknowledged& before : before_) before.at += seconds;
+  for (Acknowledgement& before : before_) before.at += seconds;
   waits_until_ += seconds;
   for (EndedAlarm& over : over_) {
     over.since += seconds;
@@ -148,7 +149,7 @@ void Board::move(double seconds) {
 std::expected<void, std::string> Board::acknowledge(const std::string& id, double now) {
   const auto found = known_.find(id);
   if (found == known_.end()) return std::unexpected("there is no such alarm any more");
-  see(found->second, now);
+  acknowledge_as_shown(found->second, now);
   return {};
 }
 

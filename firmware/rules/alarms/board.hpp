@@ -14,7 +14,7 @@
 namespace adit::alarms {
 
 /// An acknowledgement of an alarm as it then was. It outlives a restart of the service.
-struct Acknowledged {
+struct Acknowledgement {
   static constexpr std::size_t kMost = 64;       // stored acknowledgements
   static constexpr std::size_t kLongest = 1024;  // bytes of what and why; longer ones are not stored
   static constexpr double kHolds = 3600;         // seconds of validity across a restart
@@ -27,13 +27,13 @@ struct Acknowledged {
   double at = 0;  // seconds since 1970
 
   static const codec::Row kRow;
-  friend bool operator==(const Acknowledged&, const Acknowledged&) = default;
+  friend bool operator==(const Acknowledgement&, const Acknowledgement&) = default;
 };
 
 /// The file: {"version": 1, "acknowledged": [...]}.
-std::string write_acknowledged(const std::vector<Acknowledged>& all);
+std::string write_acknowledged(const std::vector<Acknowledgement>& all);
 /// An error anywhere rejects the whole file.
-std::expected<std::vector<Acknowledged>, std::string> read_acknowledged(std::string_view json);
+std::expected<std::vector<Acknowledgement>, std::string> read_acknowledged(std::string_view json);
 
 /// History of the conditions: start of each, acknowledgements, and the last kMostOver that ended.
 class Board {
@@ -49,10 +49,10 @@ class Board {
   std::expected<void, std::string> acknowledge(const std::string& id, double now);
 
   /// Restores acknowledgements from before a restart at `now`. Each takes effect if its alarm returns
-  /// unchanged within Acknowledged::kWaitsFor. An alarm that got worse, ended or changed its text is new.
-  void remember(std::vector<Acknowledged> before, double now);
+  /// unchanged within Acknowledgement::kWaitsFor. An alarm that got worse, ended or changed its text is new.
+  void remember(std::vector<Acknowledgement> before, double now);
   /// Acknowledgements to store for the next start.
-  std::vector<Acknowledged> acknowledgements() const;
+  std::vector<Acknowledgement> acknowledgements() const;
 
   /// The conditions as alarms: by severity, then the oldest first.
   std::vector<Alarm> to_alarms(const std::vector<Condition>& conditions, double now) const;
@@ -64,16 +64,16 @@ class Board {
     Condition condition, worst;  // now; at its worst, for the history
     double since = 0, worst_since = 0;
     bool acknowledged = false;
-    Acknowledged seen = {};  // the alarm when it was acknowledged
+    Acknowledgement seen = {};  // the alarm when it was acknowledged
   };
   static bool is_worse(const Condition& condition, const KnownCondition& known);
-  static void see(KnownCondition& known, double now);
-  void take_up_before(const std::vector<Condition>& conditions, double now);
+  static void acknowledge_as_shown(KnownCondition& known, double now);
+  void restore_acknowledged(const std::vector<Condition>& conditions, double now);
   static EndedAlarm to_ended(const KnownCondition& known, double now);
 
   std::map<std::string, KnownCondition> known_;
   std::deque<EndedAlarm> over_;
-  std::vector<Acknowledged> before_;  // alarms that have not returned yet
+  std::vector<Acknowledgement> before_;  // alarms that have not returned yet
   double waits_until_ = 0;
 };
 

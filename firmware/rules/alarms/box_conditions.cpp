@@ -16,7 +16,7 @@ const Action kOpenSetUp{"Open set-up", "/setup"};
 const Action kOpenNetwork{"Open set-up", "/setup#network"};
 const Action kOpenSystem{"Open system", "/system"};
 
-void find_pending_change(const facts::Network& network, Found& found) {
+void find_pending_change(const facts::Network& network, Conditions& found) {
   if (!network.confirm_within) return;
   const auto left = static_cast<std::int64_t>(std::ceil(*network.confirm_within));
   found.push_back({.id = "network_change",
@@ -32,7 +32,7 @@ std::string side_of(bool is_team) {
   return is_team ? "team" : "command_post";
 }
 
-void find_cables(const Traffic& traffic, Found& found) {
+void find_cables(const Traffic& traffic, Conditions& found) {
   for (const facts::LinkRow& link : traffic.links) {
     if (link.carrier.value_or(false)) continue;
     const std::string side = link.side;
@@ -57,7 +57,7 @@ bool is_heard(const facts::EndpointRow& endpoint) {
          endpoint.fault != facts::EndpointFault::Silent;
 }
 
-void find_exchanged_cables(const facts::Network& network, const Traffic& traffic, Found& found) {
+void find_exchanged_cables(const facts::Network& network, const Traffic& traffic, Conditions& found) {
   const auto& exchanged = network.exchanged;
   if (!exchanged || std::ranges::any_of(traffic.endpoints, is_heard)) return;
   found.push_back({.id = "cables_exchanged",
@@ -67,7 +67,7 @@ void find_exchanged_cables(const facts::Network& network, const Traffic& traffic
                                    exchanged->sought_on)});
 }
 
-void find_addresses(const facts::Network& network, Found& found) {
+void find_addresses(const facts::Network& network, Conditions& found) {
   if (network.no_address) {
     found.push_back({.id = "no_address",
                      .side = Side::Box,
@@ -87,14 +87,14 @@ void find_addresses(const facts::Network& network, Found& found) {
   }
 }
 
-void add(Found& found, const std::string& trouble, Condition condition) {
+void add(Conditions& found, const std::string& trouble, Condition condition) {
   if (trouble.empty()) return;
   condition.side = Side::Box;
   condition.why += trouble;
   found.push_back(std::move(condition));
 }
 
-void find_wear(const facts::Disk& disk, Found& found) {
+void find_wear(const facts::Disk& disk, Conditions& found) {
   if (disk.life >= kWornLife || disk.spares >= kWornSpares) {
     found.push_back({.id = "disk_health",
                      .severity = Severity::Ask,
@@ -120,15 +120,15 @@ std::string scarcity_of(const facts::Disk& disk) {
   return left == 0 ? "the disk is full" : sentence("only ", left, " kB of the disk are free");
 }
 
-std::string unkept_run(const facts::Disk& disk) {
+std::string unstored_run_text(const facts::Disk& disk) {
   return disk.run.empty() ? "" : "the run's map is not stored, so a restart would lose it: " + disk.run;
 }
 
 /// One alarm for a scarce disk, which names its consequences. A ledger that cannot be read, and messages in
 /// memory, need other remedies, so they keep their own alarms.
-void find_scarce_disk(const facts::Box& box, Found& found) {
+void find_scarce_disk(const facts::Box& box, Conditions& found) {
   const bool is_full = *box.disk.free < 1000;
-  const std::string run = unkept_run(box.disk);
+  const std::string run = unstored_run_text(box.disk);
   Condition condition{.id = "disk_full",
                       .side = Side::Box,
                       .headline = {"The disk", is_full ? "full" : "nearly full"},
@@ -150,7 +150,7 @@ void find_scarce_disk(const facts::Box& box, Found& found) {
   found.push_back(std::move(condition));
 }
 
-void find_disk_troubles(const facts::Box& box, Found& found) {
+void find_disk_troubles(const facts::Box& box, Conditions& found) {
   const bool scarce = is_scarce(box.disk);
   if (!scarce || box.ledger_is_closed) {
     add(found, box.ledger_refusal,
@@ -183,7 +183,7 @@ void find_disk_troubles(const facts::Box& box, Found& found) {
   find_wear(box.disk, found);
 }
 
-void find_stamp_troubles(const facts::Box& box, Found& found) {
+void find_stamp_troubles(const facts::Box& box, Conditions& found) {
   constexpr double kDay = 86400;
   if (box.stamps_ahead > 0) {
     found.push_back({.id = "stamps",
@@ -198,7 +198,7 @@ void find_stamp_troubles(const facts::Box& box, Found& found) {
   }
 }
 
-void find_update_troubles(const facts::Update& update, Found& found) {
+void find_update_troubles(const facts::Update& update, Conditions& found) {
   if (update.on_trial) {
     found.push_back({.id = "update_on_trial",
                      .severity = Severity::Wait,
@@ -217,14 +217,14 @@ void find_update_troubles(const facts::Update& update, Found& found) {
 
 }  // namespace
 
-void find_network_troubles(const facts::Network& network, const Traffic& traffic, Found& found) {
+void find_network_troubles(const facts::Network& network, const Traffic& traffic, Conditions& found) {
   find_pending_change(network, found);
   find_cables(traffic, found);
   find_exchanged_cables(network, traffic, found);
   find_addresses(network, found);
 }
 
-void find_box_troubles(const facts::Box& box, Found& found) {
+void find_box_troubles(const facts::Box& box, Conditions& found) {
   add(found, box.standby,
       {.id = "standby",
        .headline = {"This box", "on standby"},

@@ -10,20 +10,20 @@ bool is(const Condition& condition, std::string_view name) {
   return std::string_view(condition.id).substr(0, condition.id.find(':')) == name;
 }
 
-bool is_post(const Condition& condition) {
+bool is_command_post(const Condition& condition) {
   return condition.id.starts_with("command_post_") && !is(condition, "command_post_throttling");
 }
 
 /// Whether the box has lost its link to the Command Post.
-bool cuts_off(const Condition& condition) {
+bool is_link_loss(const Condition& condition) {
   return condition.id == "cable_out:command_post" || condition.id == "cables_exchanged" ||
          condition.id == "no_address";
 }
 
 /// Whether the condition stops all traffic to the endpoint.
 bool stops(const Condition& condition, std::string_view endpoint) {
-  if (cuts_off(condition)) return true;
-  const bool down = is_post(condition) || is(condition, "no_token");
+  if (is_link_loss(condition)) return true;
+  const bool down = is_command_post(condition) || is(condition, "no_token");
   return down && (condition.subject.empty() || condition.subject == endpoint);
 }
 
@@ -37,14 +37,15 @@ bool is_of_maps(const Condition& condition) {
 
 /// Whether the condition concerns the spare after a takeover.
 bool is_for_the_spare(const Condition& condition) {
-  return is_post(condition) || is(condition, "command_post_throttling") || is_robots_silence(condition) ||
-         is_of_maps(condition) || is(condition, "clients_refused") || condition.id.starts_with("report_");
+  return is_command_post(condition) || is(condition, "command_post_throttling") ||
+         is_robots_silence(condition) || is_of_maps(condition) || is(condition, "clients_refused") ||
+         condition.id.starts_with("report_");
 }
 
 /// Whether `other` follows from `cause`.
 bool explains(const Condition& cause, const Condition& other) {
   if (cause.id == "standby") return is_for_the_spare(other);
-  if (cuts_off(cause) && (is_post(other) || is(other, "command_post_throttling"))) return true;
+  if (is_link_loss(cause) && (is_command_post(other) || is(other, "command_post_throttling"))) return true;
   if (stops(cause, "mapping") && (is_of_maps(other) || is_robots_silence(other))) return true;
   if (stops(cause, "scoring") && is(other, "report_in_doubt") && other.severity == Severity::Wait)
     return true;
@@ -53,7 +54,7 @@ bool explains(const Condition& cause, const Condition& other) {
 
 /// Removes conditions that follow from a larger cause and adds their number to that cause. Order of causes:
 /// the cable, the endpoints, maps and robots.
-void hide_consequences(Found& found) {
+void hide_consequences(Conditions& found) {
   // Larger causes come first, so a condition is counted at its largest cause.
   for (std::size_t i = 0; i < found.size(); ++i) {
     std::uint64_t hidden = 0;
@@ -70,9 +71,9 @@ void hide_consequences(Found& found) {
 }  // namespace
 
 std::vector<Condition> conditions_of(const facts::Snapshot& snapshot) {
-  Found found;
+  Conditions found;
   find_network_troubles(snapshot.network, snapshot.traffic, found);
-  find_post_troubles(snapshot.traffic, found);
+  find_command_post_troubles(snapshot.traffic, found);
   find_report_troubles(snapshot.reports, found);
   find_robot_troubles(snapshot.traffic, snapshot.clients, found);
   find_box_troubles(snapshot.box, found);

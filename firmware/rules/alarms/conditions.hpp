@@ -12,12 +12,12 @@ namespace adit::alarms {
 std::vector<Condition> conditions_of(const facts::Snapshot& snapshot);
 
 /// Its parts, one for each side of the box.
-using Found = std::vector<Condition>;
-void find_post_troubles(const facts::Traffic& traffic, Found& found);
-void find_network_troubles(const facts::Network& network, const facts::Traffic& traffic, Found& found);
-void find_robot_troubles(const facts::Traffic& traffic, const facts::Clients& clients, Found& found);
-void find_report_troubles(const facts::Reports& reports, Found& found);
-void find_box_troubles(const facts::Box& box, Found& found);
+using Conditions = std::vector<Condition>;
+void find_command_post_troubles(const facts::Traffic& traffic, Conditions& found);
+void find_network_troubles(const facts::Network& network, const facts::Traffic& traffic, Conditions& found);
+void find_robot_troubles(const facts::Traffic& traffic, const facts::Clients& clients, Conditions& found);
+void find_report_troubles(const facts::Reports& reports, Conditions& found);
+void find_box_troubles(const facts::Box& box, Conditions& found);
 
 /// Reports left at which the alarm starts.
 inline constexpr std::int64_t kFewReports = 5;

@@ -16,7 +16,7 @@ constexpr double kNew = 0.25;  // weight of the last gap
 
 }  // namespace
 
-void Growth::look(std::size_t bytes, std::size_t room, double now) {
+void Growth::update(std::size_t bytes, std::size_t room, double now) {
   if (!begun_ || now - step_at_ >= kStep) {
     begun_ = true;
     step_at_ = now;
@@ -46,7 +46,7 @@ void Habits::expect(const std::string& robot, double now) {
   known.is_expected = true;
 }
 
-void Habits::carry_on(const std::string& robot, const Habit& habit, std::uint64_t count) {
+void Habits::restore(const std::string& robot, const Habit& habit, std::uint64_t count) {
   if (has_room(habit.last)) known_[robot] = {.count = count, .habit = habit, .was_expected = true};
 }
 
@@ -110,7 +110,7 @@ void begin(std::optional<double>& since, bool so, double now) {
 
 }  // namespace
 
-void EndpointWatch::look(ConnectionState& way, const ConnectionSample& seen, double now) {
+void EndpointWatch::update(ConnectionState& way, const ConnectionSample& seen, double now) {
   const bool ended = seen.ended != way.seen.ended;
   const bool answered = ended && seen.status != 0;
   const bool moved = seen.sent != way.seen.sent;
@@ -132,7 +132,7 @@ void EndpointWatch::look(ConnectionState& way, const ConnectionSample& seen, dou
   way.seen = seen;
 }
 
-void EndpointWatch::look(const std::vector<ConnectionSample>& seen, double now) {
+void EndpointWatch::update(const std::vector<ConnectionSample>& seen, double now) {
   if (ways_.size() != seen.size()) {
     ways_.assign(seen.size(), {});
     for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -140,7 +140,7 @@ void EndpointWatch::look(const std::vector<ConnectionSample>& seen, double now) 
       ways_[i].seen.throttled = seen[i].throttled;
     }
   }
-  for (std::size_t i = 0; i < seen.size(); ++i) look(ways_[i], seen[i], now);
+  for (std::size_t i = 0; i < seen.size(); ++i) update(ways_[i], seen[i], now);
   const bool was_stopped = std::exchange(is_stopped_, endpoint(now).fault < EndpointFault::Throttling);
   if (was_stopped && !is_stopped_) well_since_ = now;
 }
@@ -159,7 +159,7 @@ bool EndpointWatch::is_well_elsewhere(const ConnectionState& way, double since, 
   });
 }
 
-EndpointRow EndpointWatch::trouble_of(const ConnectionState& way, double now) const {
+EndpointRow EndpointWatch::endpoint_row(const ConnectionState& way, double now) const {
   const ConnectionSample& seen = way.seen;
   const auto lasts = [&](const std::optional<double>& since, double seconds) {
     return since && now - *since >= seconds && !is_well_elsewhere(way, *since, now);
@@ -188,7 +188,7 @@ EndpointRow EndpointWatch::endpoint(double now) const {
   EndpointRow worst = throttling(now);
   double longest = 0;
   for (const ConnectionState& way : ways_) {
-    const EndpointRow other = trouble_of(way, now);
+    const EndpointRow other = endpoint_row(way, now);
     const double waits = way.waits && !is_well_elsewhere(way, *way.waits, now) ? now - *way.waits : 0;
     if (other.fault < worst.fault) worst = other;
     longest = std::max(longest, waits);

@@ -21,7 +21,7 @@ class Growth {
   static constexpr double kTold = 30;       // seconds that growth is reported after the last rise
 
   /// Call each second. `now`: monotonic seconds.
-  void look(std::size_t bytes, std::size_t room, double now);
+  void update(std::size_t bytes, std::size_t room, double now);
   bool grows(double now) const { return grew_ && now - last_ < kTold; }
 
  private:
@@ -54,7 +54,7 @@ class Habits {
   void on_count(const std::string& robot, std::uint64_t count, double now);
   /// Restores the habit from before a restart. `count`: messages counted by this process before its first
   /// on_count().
-  void carry_on(const std::string& robot, const Habit& habit, std::uint64_t count);
+  void restore(const std::string& robot, const Habit& habit, std::uint64_t count);
   /// Makes the robot's silence count from now on. For a robot that sent in this run before a reboot, and has
   /// at most one message since, which may be older than the reboot.
   void expect(const std::string& robot, double now);
@@ -105,7 +105,7 @@ class EndpointWatch {
   explicit EndpointWatch(bool has_robots = false) : has_robots_(has_robots) {}
 
   /// Call each second with the same connections in the same order. `now`: monotonic seconds.
-  void look(const std::vector<ConnectionSample>& seen, double now);
+  void update(const std::vector<ConnectionSample>& seen, double now);
   /// Call if the endpoint's address or token has changed.
   void forget();
   /// The fault, as the members `fault`, `since`, `said`, `well_for` and `waits`, in monotonic seconds.
@@ -120,9 +120,9 @@ class EndpointWatch {
     std::optional<double> failing = {};  // start of errors as the only answers
     std::optional<double> barred = {};   // start of answers 401, 403, or from another server
   };
-  void look(ConnectionState& way, const ConnectionSample& seen, double now);
+  void update(ConnectionState& way, const ConnectionSample& seen, double now);
   bool is_well_elsewhere(const ConnectionState& way, double since, double now) const;
-  facts::EndpointRow trouble_of(const ConnectionState& way, double now) const;
+  facts::EndpointRow endpoint_row(const ConnectionState& way, double now) const;
   facts::EndpointRow throttling(double now) const;
 
   bool has_robots_;

@@ -45,7 +45,7 @@ Condition condition_of(const Trouble& trouble, std::string name) {
           .degree = trouble.endpoints.size()};
 }
 
-void find_missing_tokens(const facts::Traffic& traffic, Found& found) {
+void find_missing_tokens(const facts::Traffic& traffic, Conditions& found) {
   for (const EndpointRow& endpoint : traffic.endpoints) {
     if (endpoint.fault != EndpointFault::NoToken) continue;
     const bool scoring = endpoint.name == "scoring";
@@ -59,12 +59,12 @@ void find_missing_tokens(const facts::Traffic& traffic, Found& found) {
   }
 }
 
-void say_unreachable(const Trouble& trouble, Condition& condition) {
+void describe_unreachable(const Trouble& trouble, Condition& condition) {
   condition.headline = {trouble.subject(), "unreachable"};
   condition.why = trouble.first().said + "; the box tries again";
 }
 
-void say_foreign(const Trouble& trouble, Condition& condition) {
+void describe_foreign(const Trouble& trouble, Condition& condition) {
   condition.headline = {"The server", "not a Command Post"};
   condition.why =
       sentence(trouble.address_text(), trouble.is_at_both() ? "" : " (" + trouble.first().name + ")",
@@ -72,7 +72,7 @@ void say_foreign(const Trouble& trouble, Condition& condition) {
   condition.action = kOpenAddresses;
 }
 
-void say_refusing(const Trouble& trouble, Condition& condition) {
+void describe_refusing(const Trouble& trouble, Condition& condition) {
   condition.headline = trouble.is_at_both() ? Headline{"Both tokens", "rejected", true}
                                             : Headline{"The " + trouble.first().name + " token", "rejected"};
   condition.why = "the Command Post answers 401 or 403; is the course right?";
@@ -82,17 +82,17 @@ void say_refusing(const Trouble& trouble, Condition& condition) {
   condition.action = kOpenTokens;
 }
 
-void say_silent(const Trouble& trouble, Condition& condition) {
+void describe_silent(const Trouble& trouble, Condition& condition) {
   condition.headline = {trouble.subject(), "silent"};
   condition.why = sentence("no answer from ", trouble.address_text());
 }
 
-void say_failing(const Trouble& trouble, Condition& condition) {
+void describe_failing(const Trouble& trouble, Condition& condition) {
   condition.headline = {trouble.subject(), "failing"};
   condition.why = sentence("its answer to every request: ", trouble.first().said);
 }
 
-void say_throttling(const Trouble& trouble, Condition& condition) {
+void describe_throttling(const Trouble& trouble, Condition& condition) {
   condition.headline = {trouble.subject(), "throttling"};
   condition.why = "it answers 429; Adit sends less often";
   condition.action = {};
@@ -103,12 +103,12 @@ constexpr struct {
   const char* id;
   void (*say)(const Trouble&, Condition&);
 } kTroubles[] = {
-    {EndpointFault::Unreachable, "command_post_unreachable", say_unreachable},
-    {EndpointFault::Foreign, "command_post_foreign", say_foreign},
-    {EndpointFault::Refusing, "command_post_refusing", say_refusing},
-    {EndpointFault::Silent, "command_post_silent", say_silent},
-    {EndpointFault::Failing, "command_post_failing", say_failing},
-    {EndpointFault::Throttling, "command_post_throttling", say_throttling},
+    {EndpointFault::Unreachable, "command_post_unreachable", describe_unreachable},
+    {EndpointFault::Foreign, "command_post_foreign", describe_foreign},
+    {EndpointFault::Refusing, "command_post_refusing", describe_refusing},
+    {EndpointFault::Silent, "command_post_silent", describe_silent},
+    {EndpointFault::Failing, "command_post_failing", describe_failing},
+    {EndpointFault::Throttling, "command_post_throttling", describe_throttling},
 };
 
 /// "": none or several have sent data.
@@ -124,7 +124,7 @@ std::string sole_robot(const facts::Traffic& traffic) {
 
 }  // namespace
 
-void find_post_troubles(const facts::Traffic& traffic, Found& found) {
+void find_command_post_troubles(const facts::Traffic& traffic, Conditions& found) {
   find_missing_tokens(traffic, found);
   const std::string only_robot = sole_robot(traffic);
   for (const auto& row : kTroubles) {

@@ -32,13 +32,13 @@ std::optional<Need> need_of(const ReportRow& row) {
 }
 
 /// Whether the lost report stands for earlier ones also.
-bool stands_for_several(const facts::Reports& reports, const ReportRow& lost) {
+bool covers_several(const facts::Reports& reports, const ReportRow& lost) {
   return lost.number > 1 &&
          std::ranges::find(reports.rows, lost.number - 1, &ReportRow::number) == reports.rows.end();
 }
 
 Headline headline_of(Need need, const facts::Reports& reports, const ReportRow& row) {
-  if (need == Need::Lost && stands_for_several(reports, row)) return {"Reports", "possibly missing", true};
+  if (need == Need::Lost && covers_several(reports, row)) return {"Reports", "possibly missing", true};
   return {sentence("Report ", row.number), kNeeds[static_cast<std::size_t>(need)].state};
 }
 
@@ -52,7 +52,7 @@ std::string reason_text(Need need, const facts::Reports& reports, const ReportRo
                   row.note);
 }
 
-void find_undecided(const facts::Reports& reports, Found& found) {
+void find_undecided(const facts::Reports& reports, Conditions& found) {
   std::array<std::uint64_t, std::size(kNeeds)> count{};
   for (const ReportRow& row : reports.rows | std::views::reverse) {
     const auto need = need_of(row);
@@ -80,7 +80,7 @@ void find_undecided(const facts::Reports& reports, Found& found) {
   }
 }
 
-void find_few_left(const facts::Reports& reports, Found& found) {
+void find_few_left(const facts::Reports& reports, Conditions& found) {
   if (!reports.left || *reports.left > kFewReports) return;
   const std::int64_t left = std::max<std::int64_t>(*reports.left, 0);
   found.push_back({.id = "reports_left",
@@ -94,7 +94,7 @@ void find_few_left(const facts::Reports& reports, Found& found) {
                    .degree = static_cast<std::uint64_t>(kFewReports - left)});
 }
 
-void find_elsewhere(const facts::Reports& reports, Found& found) {
+void find_elsewhere(const facts::Reports& reports, Conditions& found) {
   for (const auto& [post, count] : reports.elsewhere) {
     found.push_back({.id = "reports_elsewhere:" + post,
                      .severity = Severity::Ask,
@@ -108,7 +108,7 @@ void find_elsewhere(const facts::Reports& reports, Found& found) {
   }
 }
 
-void find_rejected(const std::vector<facts::RejectedRow>& rows, Found& found) {
+void find_rejected(const std::vector<facts::RejectedRow>& rows, Conditions& found) {
   std::size_t count = 0;
   const facts::RejectedRow* newest = nullptr;
   for (const facts::RejectedRow& row : rows) {
@@ -130,7 +130,7 @@ void find_rejected(const std::vector<facts::RejectedRow>& rows, Found& found) {
 
 }  // namespace
 
-void find_report_troubles(const facts::Reports& reports, Found& found) {
+void find_report_troubles(const facts::Reports& reports, Conditions& found) {
   find_undecided(reports, found);
   find_few_left(reports, found);
   find_elsewhere(reports, found);

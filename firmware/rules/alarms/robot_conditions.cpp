@@ -28,7 +28,7 @@ Action show(const std::string& robot) {
 }
 
 /// Replaces the last `count` conditions by `larger`, which hides them.
-void put_in_place_of(Found& found, std::size_t count, Condition larger) {
+void replace_last(Conditions& found, std::size_t count, Condition larger) {
   const auto those = found.end() - static_cast<std::ptrdiff_t>(count);
   larger.since = std::ranges::min_element(those, found.end(), {}, &Condition::since)->since;
   larger.hides = larger.degree = count;
@@ -46,7 +46,7 @@ std::size_t count_of_robots(const Traffic& traffic) {
   return names.size();
 }
 
-void find_silent(const Traffic& traffic, Found& found) {
+void find_silent(const Traffic& traffic, Conditions& found) {
   std::size_t count = 0;
   for (const auto& [name, habit] : traffic.habits) {
     if (!habit.silent) continue;
@@ -61,11 +61,11 @@ void find_silent(const Traffic& traffic, Found& found) {
   }
   const bool are_all = count == count_of_robots(traffic);
   if (count < 2 || (!are_all && count < kMany)) return;
-  put_in_place_of(found, count,
-                  {.id = "robots_silent",
-                   .side = Side::Robot,
-                   .headline = {sentence(are_all ? "All " : "", count, " robots"), "silent", true},
-                   .why = "check the team's network and the base station"});
+  replace_last(found, count,
+               {.id = "robots_silent",
+                .side = Side::Robot,
+                .headline = {sentence(are_all ? "All " : "", count, " robots"), "silent", true},
+                .why = "check the team's network and the base station"});
 }
 
 /// The robot's map that is furthest behind, and more than `least` seconds, without the endpoint's own
@@ -81,7 +81,7 @@ const ActivityRow* find_most_delayed(const Traffic& traffic, const std::string& 
   return longest;
 }
 
-void find_late_maps(const Traffic& traffic, Found& found) {
+void find_late_maps(const Traffic& traffic, Conditions& found) {
   const double told = 2 * (kLateAfter + traffic.turn), stuck = std::max(kStuckAfter, 1.5 * told);
   std::vector<std::string> names;
   for (const ActivityRow& row : traffic.activities) {
@@ -109,15 +109,15 @@ void find_late_maps(const Traffic& traffic, Found& found) {
   if (count < kMany) return;
   const bool bad = std::ranges::any_of(found.end() - static_cast<std::ptrdiff_t>(count), found.end(),
                                        [](const Condition& each) { return each.severity == Severity::Bad; });
-  put_in_place_of(found, count,
-                  {.id = "maps_behind",
-                   .severity = bad ? Severity::Bad : Severity::Wait,
-                   .side = Side::Network,
-                   .headline = {sentence("Maps of ", count, " robots"), "behind", true},
-                   .why = "the robots send more than the box can forward"});
+  replace_last(found, count,
+               {.id = "maps_behind",
+                .severity = bad ? Severity::Bad : Severity::Wait,
+                .side = Side::Network,
+                .headline = {sentence("Maps of ", count, " robots"), "behind", true},
+                .why = "the robots send more than the box can forward"});
 }
 
-void find_full_queue(const Traffic& traffic, Found& found) {
+void find_full_queue(const Traffic& traffic, Conditions& found) {
   std::string names;
   std::size_t count = 0;
   for (const ActivityRow& row : traffic.activities) {
@@ -149,7 +149,7 @@ void find_full_queue(const Traffic& traffic, Found& found) {
   }
 }
 
-void find_unknown(const facts::Clients& clients, const Traffic& traffic, Found& found) {
+void find_unknown(const facts::Clients& clients, const Traffic& traffic, Conditions& found) {
   const std::string known = icd::join_words(traffic.registered);
   for (const std::string& name : clients.unknown_robots) {
     found.push_back({.id = "robot_unknown:" + name,
@@ -162,7 +162,7 @@ void find_unknown(const facts::Clients& clients, const Traffic& traffic, Found& 
   }
 }
 
-void find_crowds(const facts::Clients& clients, Found& found) {
+void find_crowds(const facts::Clients& clients, Conditions& found) {
   for (const facts::Crowd& crowd : clients.crowds) {
     const std::string most = "most from " + crowd.address;
     if (crowd.kind == facts::Crowd::Kind::NoRoom) {
@@ -203,7 +203,7 @@ void find_crowds(const facts::Clients& clients, Found& found) {
 
 }  // namespace
 
-void find_robot_troubles(const Traffic& traffic, const facts::Clients& clients, Found& found) {
+void find_robot_troubles(const Traffic& traffic, const facts::Clients& clients, Conditions& found) {
   find_silent(traffic, found);
   find_late_maps(traffic, found);
   find_full_queue(traffic, found);

@@ -51,7 +51,7 @@ bool is_silent(const std::string& robot, const Traffic& traffic) {
 }
 
 /// Names of the silent robots that have sent no message since the service started.
-std::vector<std::string> unheard(const Traffic& traffic) {
+std::vector<std::string> unheard_robots(const Traffic& traffic) {
   std::vector<std::string> names;
   for (const auto& [name, habit] : traffic.habits) {
     const bool is_heard = std::ranges::count(traffic.activities, name, &ActivityRow::robot) > 0;
@@ -93,7 +93,8 @@ AllMaps maps_of(const Traffic& traffic) {
     maps.age = std::max(maps.age, row.age);
     maps.heard = least(maps.heard, row.heard);
   }
-  for (const std::string& name : unheard(traffic)) all[name] = {.level = Level::Bad, .is_silent = true};
+  for (const std::string& name : unheard_robots(traffic))
+    all[name] = {.level = Level::Bad, .is_silent = true};
   return all;
 }
 
@@ -211,7 +212,7 @@ void add_standings(Traffic& traffic) {
   all.erase("");
   for (const auto& [name, rows] : all) traffic.standings.push_back(standing_row(name, rows));
   if (stopped_endpoint(traffic) != nullptr) return;
-  for (const std::string& name : unheard(traffic)) {
+  for (const std::string& name : unheard_robots(traffic)) {
     traffic.standings.push_back({.name = name,
                                  .level = Level::Bad,
                                  .word = "silent",

@@ -52,7 +52,7 @@ constexpr codec::Row Request::kRow = codec::complete<Request>({"", kClockRequest
 constexpr codec::Row Ntp::kRow = codec::complete<Ntp>({"", kNtp});
 constexpr codec::Row Status::kRow = codec::complete<Status>({"", kClockStatus});
 
-std::string hindrance(const Request& request, double at, const Status& status) {
+std::string refusal_reason(const Request& request, double at, const Status& status) {
   if (request.source == Source::None || request.source == Source::Chip)
     return "source: expected a source that can set the clock";
   if (!(request.time >= kEarliest && request.time < kLatest))

@@ -96,6 +96,6 @@ struct Status {
 };
 
 /// Why a request must be rejected at monotonic second `at`, or "".
-std::string hindrance(const Request& request, double at, const Status& status);
+std::string refusal_reason(const Request& request, double at, const Status& status);
 
 }  // namespace adit::clock

@@ -23,7 +23,7 @@ std::string metres(double distance) {
 }
 
 /// True if repeats of the report get its answer or wait for it.
-bool stands_for_others(const Report& report) {
+bool covers_repeats(const Report& report) {
   if (report.state == ReportState::Rejected) return false;  // not recorded, so a repeat is sent
   return !effect_of(report).again;
 }
@@ -59,7 +59,7 @@ const Report* ReportReview::earlier(const Report& report) const {
   for (const Report* const other : std::views::reverse(same_in_run(report.report))) {
     if (report.number != 0 && other->number >= report.number) continue;
     const Report& original = original_of(*other, book_);
-    if (original.number == report.number || !stands_for_others(original)) continue;
+    if (original.number == report.number || !covers_repeats(original)) continue;
     // The run of a finished report may have ended unnoticed: reason_to_hold().
     if (is_final(original.state) && !account_.runs().name_trouble().empty()) continue;
     return &original;
@@ -67,13 +67,13 @@ const Report* ReportReview::earlier(const Report& report) const {
   return nullptr;
 }
 
-const Report* ReportReview::twin(const Report& report) const {
+const Report* ReportReview::find_duplicate(const Report& report) const {
   for (const Report* const other : same_in_run(report.report)) {
     const bool is_compared_later = other->state == ReportState::Queued && !other->asked &&
                                    other->number > report.number && is_unchecked(other->number);
     const bool waits = other->state == ReportState::Held && !awaits_undo(other->number);
     const bool held_back = waits || other->state == ReportState::Withdrawn || is_compared_later;
-    if (other->number != report.number && !held_back && stands_for_others(*other)) return other;
+    if (other->number != report.number && !held_back && covers_repeats(*other)) return other;
   }
   return nullptr;
 }
@@ -104,10 +104,10 @@ const Report* ReportReview::other_command_post_twin(const Report& report) const 
 constexpr const char* kMayGoOn = ", whose run may go on: ";
 
 /// Same as a report that was sent in a run that may be the present one.
-Hold ReportReview::maybe_repeat(const Report& report) const {
+Hold ReportReview::repeat_hold(const Report& report) const {
   const Run& run = account_.run();
   const Report* const sent =
-      sent_elsewhere(report, [this](const Run& its) { return account_.runs().may_be_present(its.number); });
+      sent_elsewhere(report, [this](const Run& its) { return account_.runs().can_be_present(its.number); });
   if (sent != nullptr) {
     const Run& its = *account_.runs().find(sent->run);
     const std::string names =
@@ -134,7 +134,7 @@ Hold ReportReview::maybe_repeat(const Report& report) const {
 }
 
 /// The settings may have changed after the last record, so that any other Command Post may have them.
-std::vector<const Report*> ReportReview::lost_here() const {
+std::vector<const Report*> ReportReview::lost_reports() const {
   const Run& run = account_.run();
   std::vector<const Report*> lost;
   for (const std::int64_t number : book_.numbers_in_doubt()) {
@@ -148,10 +148,10 @@ std::vector<const Report*> ReportReview::lost_here() const {
 
 Hold ReportReview::reason_to_hold(const Report& report) const {
   if (report.asked) return {};
-  if (const auto lost = lost_here(); !lost.empty()) {
+  if (const auto lost = lost_reports(); !lost.empty()) {
     return {icd::sentence("", lost.front()->note, "; this may be the same report")};
   }
-  if (Hold hold = maybe_repeat(report); hold.same_as != 0) return hold;
+  if (Hold hold = repeat_hold(report); hold.same_as != 0) return hold;
   for (const Report* const other : same_in_run(report.report)) {
     if (!other->is_corrected()) continue;
     return {icd::sentence("the same as report ", other->number, ", corrected as report ", other->same_as)};
@@ -162,7 +162,7 @@ Hold ReportReview::reason_to_hold(const Report& report) const {
     const bool later = report.number != 0 && number > report.number && other.state == ReportState::Queued;
     const bool counts = account_.is_of_run(other) && !later && number != report.number &&
                         other.state != ReportState::Withdrawn;
-    if (counts && is_near(other.report, report.report, rules_.near_metres) && stands_for_others(other)) {
+    if (counts && is_near(other.report, report.report, rules_.near_metres) && covers_repeats(other)) {
       return {icd::sentence("the same type as report ", number, ", ",
                             metres(distance(other.report, report.report)), " from it")};
     }
@@ -264,7 +264,7 @@ std::string reconciled_answer(const Report& report, const Run& run, std::optiona
 namespace {
 
 /// Empty if the run's status can decide a group that begins with this report.
-std::string undecidable_first(const Report& report, const Run& run, const Run* its) {
+std::string group_undecidable_reason(const Report& report, const Run& run, const Run* its) {
   if (its != nullptr && !its->post.empty() && its->post != run.post) {
     return "it was sent to another Command Post: the one at " + its->post +
            " is asked when the settings name it again";
@@ -281,8 +281,8 @@ std::string undecidable_first(const Report& report, const Run& run, const Run* i
   return "";
 }
 
-SentSince later_reports(const Report& doubt, const ReportBook& book) {
-  SentSince since;
+LaterReports later_reports(const Report& doubt, const ReportBook& book) {
+  LaterReports since;
   for (const auto& [number, report] : book.all()) {
     if (report.run != doubt.run || report.sending <= doubt.sending) continue;
     const Effect effect = effect_of(report);
@@ -313,9 +313,9 @@ const Report* Doubts::leader_of(const Report& doubt) const {
   return &doubt;
 }
 
-std::string Doubts::undecidable(const Report& doubt) const {
+std::string Doubts::undecidable_reason(const Report& doubt) const {
   const Report& first = *leader_of(doubt);
-  return undecidable_first(first, account_.run(), account_.runs().find(first.run));
+  return group_undecidable_reason(first, account_.run(), account_.runs().find(first.run));
 }
 
 bool Doubts::has_open_group() const {
@@ -336,7 +336,7 @@ std::int64_t Doubts::open_count() const {
 bool Doubts::is_asking(const Report& report) const {
   if (report.state != ReportState::InDoubt || report.run != account_.run().number) return false;
   const auto inquiry = inquiries_.find(leader_of(report)->number);
-  return inquiry != inquiries_.end() && !inquiry->second.is_in_vain();
+  return inquiry != inquiries_.end() && !inquiry->second.has_timed_out();
 }
 
 bool Doubts::is_pending(Instant now) const {
@@ -373,13 +373,14 @@ void Doubts::begin(Instant now) {
   inquiries_.clear();
   for (const Report* const doubt : all()) lost_.try_emplace(doubt->number, now);
   for (const Reports& group : groups()) {
-    if (undecidable(*group.front()).empty()) inquiries_.emplace(group.front()->number, Inquiry(policy_, now));
+    if (undecidable_reason(*group.front()).empty())
+      inquiries_.emplace(group.front()->number, Inquiry(policy_, now));
   }
 }
 
 void Doubts::on_lost(std::int64_t number, Instant now) {
   lost_[number] = now;
-  account_.lose();
+  account_.forget_expected();
   begin(now);
 }
 
@@ -390,7 +391,7 @@ void Doubts::on_failed(Time time) {
     Inquiry& inquiry = found->second;
     inquiry.on_asked(time.now);
     inquiry.on_failed(time.now);
-    if (inquiry.is_in_vain()) {
+    if (inquiry.has_timed_out()) {
       explain(group, "the Command Post does not answer with the run's status", time);
     }
   }
@@ -404,7 +405,8 @@ Evidence Doubts::weigh_group(const Reports& group, const icd::RunStatus& status)
   return weigh(*first.before, std::ssize(group), first.beside + later, later_reports(first, book_), status);
 }
 
-std::vector<ReportBook::Step> Doubts::hear(const icd::RunStatus& status, Instant asked, Time time) {
+std::vector<ReportBook::Step> Doubts::decide_by_status(const icd::RunStatus& status, Instant asked,
+                                                       Time time) {
   std::vector<ReportBook::Step> steps;
   for (const Reports& group : groups()) {
     const auto found = inquiries_.find(group.front()->number);
@@ -412,7 +414,7 @@ std::vector<ReportBook::Step> Doubts::hear(const icd::RunStatus& status, Instant
     Inquiry& inquiry = found->second;
     inquiry.on_asked(time.now);
     Evidence evidence = weigh_group(group, status);
-    evidence.finding = inquiry.hear(evidence, status.run_clock, asked, time.now);
+    evidence.finding = inquiry.add_evidence(evidence, status.run_clock, asked, time.now);
     switch (evidence.finding) {
       case Finding::Recorded:
         for (const Report* const doubt : group) steps.push_back(this->step_for(*doubt, evidence));
@@ -464,12 +466,12 @@ ReportBook::Step Doubts::step_for(const Report& doubt, const Evidence& evidence)
 
 /// The operator may have sent the same report since. Then this one is held.
 ReportBook::Step Doubts::missing(const Report& doubt, const Evidence& evidence) const {
-  const Report* const same = doubt.asked ? nullptr : review_.twin(doubt);
+  const Report* const same = doubt.asked ? nullptr : review_.find_duplicate(doubt);
   if (same != nullptr) {
     return {.number = doubt.number,
             .event = ReportEvent::Held,
             .note = icd::sentence("not recorded, and report ", same->number, " is the same and is ",
-                                  shown_name_of(same->state), " in this run")};
+                                  display_name(same->state), " in this run")};
   }
   if (doubt.tries >= kMostTries) {
     return {.number = doubt.number,
@@ -483,7 +485,7 @@ void Doubts::explain(const Reports& doubts, const std::string& seen, Time time) 
   std::vector<Report> noted;
   for (const Report* const doubt : doubts) {
     if (doubt->is_lost()) continue;  // its note is complete
-    const std::string why = undecidable(*doubt);
+    const std::string why = undecidable_reason(*doubt);
     const std::string note =
         is_asking(*doubt) ? "asking for the run's status: " + seen : (why.empty() ? seen : why) + kOperator;
     if (doubt->note == note) continue;
@@ -512,7 +514,7 @@ bool Doubts::blur(std::int64_t decided, Time time) {
   }
   if (!book_.note(blurred)) return false;
   if (report.run != account_.run().number) return true;  // no inquiry there
-  if (!report.counted) account_.lose(time.now + policy_.doubt_for);
+  if (!report.counted) account_.forget_expected(time.now + policy_.doubt_for);
   begin(time.now);
   return true;
 }

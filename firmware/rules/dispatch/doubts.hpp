@@ -39,19 +39,19 @@ class ReportReview {
   ReportReview(const ReportRules& rules, const ReportBook& book, const RunAccount& account)
       : rules_(rules), book_(book), account_(account) {}
 
-  /// The same reports of RunAccount::meant_run(), oldest first.
+  /// The same reports of RunAccount::expected_run(), oldest first.
   std::vector<const Report*> same_in_run(const icd::ArtifactReport& report) const;
   /// The report that this one would repeat in that run, or null.
   const Report* earlier(const Report& report) const;
   /// Another same report of that run, queued or sent, or null.
-  const Report* twin(const Report& report) const;
+  const Report* find_duplicate(const Report& report) const;
   /// The same report of that run, sent after this one and answered, or null.
   const Report* answered_later(const Report& report) const;
   /// The same report, sent to another Command Post, if this one has not answered yet. Otherwise null.
   const Report* other_command_post_twin(const Report& report) const;
   Hold reason_to_hold(const Report& report) const;
   /// Reports in doubt that the present run may have got before the ledger lost them. New reports are held.
-  std::vector<const Report*> lost_here() const;
+  std::vector<const Report*> lost_reports() const;
 
   /// The run is unknown: compare the report before it is sent.
   void compare_later(std::int64_t number) { unchecked_.insert(number); }
@@ -80,7 +80,7 @@ class ReportReview {
     double stamp;  // the same, in seconds since 1970
   };
 
-  Hold maybe_repeat(const Report& report) const;
+  Hold repeat_hold(const Report& report) const;
   const Report* sent_elsewhere(const Report& report, const std::function<bool(const Run&)>& counts) const;
 
   const ReportRules& rules_;
@@ -130,8 +130,8 @@ class Doubts {
   void on_lost(std::int64_t number, Instant now);
   /// A status that was requested at `asked`. Returns the steps that it decides: of all reports of a group, or
   /// none.
-  std::vector<ReportBook::Step> hear(const icd::RunStatus& status, Instant asked, Time time);
-  /// After the steps of hear(): the doubts that this status counts.
+  std::vector<ReportBook::Step> decide_by_status(const icd::RunStatus& status, Instant asked, Time time);
+  /// After the steps of decide_by_status(): the doubts that this status counts.
   void count(Instant asked, Time time);
   void on_failed(Time time);
 
@@ -163,7 +163,7 @@ class Doubts {
   std::vector<Reports> groups() const;
   /// The first doubt of its group, or the doubt itself.
   const Report* leader_of(const Report& doubt) const;
-  std::string undecidable(const Report& doubt) const;
+  std::string undecidable_reason(const Report& doubt) const;
   Evidence weigh_group(const Reports& group, const icd::RunStatus& status) const;
   ReportBook::Step step_for(const Report& doubt, const Evidence& evidence) const;
   ReportBook::Step missing(const Report& doubt, const Evidence& evidence) const;

@@ -40,7 +40,7 @@ bool was_recorded(const Report& report) {
 }
 
 /// True if the Command Post has it or may have it, and repeats get its answer.
-bool stands(const Report& report) {
+bool has_effect(const Report& report) {
   const bool was_sent =
       was_recorded(report) || report.state == ReportState::InDoubt || report.state == ReportState::Sending;
   return was_sent && !effect_of(report).again;
@@ -230,14 +230,14 @@ class MergedReports {
       next_sending_ = std::max(next_sending_, sendings_here_ + report.sending);
   }
 
-  TakeOver run() {
+  TakeoverChanges run() {
     for (const auto& [number, run] : runs_.runs()) result_.runs.push_back(run);
     for (const Report& report : there_.reports) number(report);
     for (const Report& report : there_.reports) merge(report);
     std::set<const Report*> met;
     for (const auto& [there, here] : same_) met.insert(here);
     for (const Report& report : here_.reports) {
-      if (!met.contains(&report)) meet_first_box(report);
+      if (!met.contains(&report)) move_own_report(report);
     }
     return std::move(result_);
   }
@@ -314,19 +314,19 @@ class MergedReports {
     if (runs_.own() == 0 || runs_.own_is_another() || report.run != runs_.present() || report.asked)
       return nullptr;
     for (const Report& own : here_.reports) {
-      if (own.run == runs_.own() && stands(own) && is_same(own.report, report.report)) return &own;
+      if (own.run == runs_.own() && has_effect(own) && is_same(own.report, report.report)) return &own;
     }
     return nullptr;
   }
 
   /// A report queued here belongs to the present run, which the first box knew.
-  void meet_first_box(const Report& own) {
+  void move_own_report(const Report& own) {
     const bool is_of_own = runs_.own() != 0 && own.run == runs_.own();
     if (own.state != ReportState::Queued || (!is_of_own && !runs_.is_unheard(own.run))) return;
     Report next = own;
     if (is_of_own && runs_.own_is_another()) {
       step(next, ReportState::Held, "the run of the first box goes on");
-    } else if (const TakenOverReport* const same = taken_like(own); same != nullptr && !own.asked) {
+    } else if (const TakenOverReport* const same = find_equal(own); same != nullptr && !own.asked) {
       next.run = runs_.present();
       next.same_as = same->report.number;
       step(next, ReportState::Held,
@@ -338,10 +338,10 @@ class MergedReports {
     result_.reports.push_back({.report = std::move(next), .there = 0, .has_stepped = true});
   }
 
-  const TakenOverReport* taken_like(const Report& own) const {
+  const TakenOverReport* find_equal(const Report& own) const {
     const auto is_like = [&](const TakenOverReport& taken) {
       return taken.there != 0 && taken.report.run == runs_.present() &&
-             (stands(taken.report) || taken.report.is_corrected()) &&
+             (has_effect(taken.report) || taken.report.is_corrected()) &&
              is_same(taken.report.report, own.report);
     };
     const auto found = std::ranges::find_if(result_.reports, is_like);
@@ -355,12 +355,12 @@ class MergedReports {
   const MergedRuns runs_;
   std::map<std::int64_t, std::int64_t> numbers_;  // of reports, from there to here
   std::int64_t next_number_ = 1, sendings_here_ = 0, next_sending_ = 0;
-  TakeOver result_;
+  TakeoverChanges result_;
 };
 
 }  // namespace
 
-TakeOver take_over(const Books& here, const Books& there, const Handover& handover) {
+TakeoverChanges take_over(const Books& here, const Books& there, const Handover& handover) {
   return MergedReports(here, there, handover).run();
 }
 

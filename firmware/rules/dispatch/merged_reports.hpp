@@ -22,7 +22,7 @@ struct TakenOverReport {
 };
 
 /// The changes that a spare writes in one transaction when it takes over.
-struct TakeOver {
+struct TakeoverChanges {
   std::vector<TakenOverReport> reports;
   std::vector<Run> runs;
 };
@@ -36,6 +36,6 @@ struct Handover {
 };
 
 /// Merges the first box (`there`) into the spare (`here`) by README.md. A repetition has no effect.
-TakeOver take_over(const Books& here, const Books& there, const Handover& handover);
+TakeoverChanges take_over(const Books& here, const Books& there, const Handover& handover);
 
 }  // namespace adit::dispatch

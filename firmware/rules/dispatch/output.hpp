@@ -36,7 +36,7 @@ class Output {
   virtual bool write(std::span<const Report> steps, const Run* run, Flush flush) = 0;
 
   /// Answers the client, unless it has disconnected. `report` is in its new state.
-  virtual void tell(ClientId client, const ClientAnswer& answer, const Report& report) = 0;
+  virtual void answer_client(ClientId client, const ClientAnswer& answer, const Report& report) = 0;
 };
 
 }  // namespace adit::dispatch

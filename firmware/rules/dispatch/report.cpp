@@ -95,7 +95,7 @@ std::optional<ReportState> state_named(std::string_view text) {
 bool is_same(const icd::ArtifactReport& one, const icd::ArtifactReport& other) {
   const auto is_near = [](double a, double b) { return std::abs(a - b) <= kSamePlace; };
   return is_near(one.position.x, other.position.x) && is_near(one.position.y, other.position.y) &&
-         is_near(one.position.z, other.position.z) && icd::same_but_for_case(one.type, other.type);
+         is_near(one.position.z, other.position.z) && icd::equals_ignoring_case(one.type, other.type);
 }
 
 double distance(const icd::ArtifactReport& one, const icd::ArtifactReport& other) {
@@ -104,7 +104,7 @@ double distance(const icd::ArtifactReport& one, const icd::ArtifactReport& other
 }
 
 bool is_near(const icd::ArtifactReport& one, const icd::ArtifactReport& other, double metres) {
-  return icd::same_but_for_case(one.type, other.type) && distance(one, other) <= metres;
+  return icd::equals_ignoring_case(one.type, other.type) && distance(one, other) <= metres;
 }
 
 std::string describe(const icd::ArtifactReport& report) {

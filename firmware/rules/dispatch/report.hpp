@@ -29,7 +29,7 @@ constexpr std::string_view name_of(ReportState state) {
   return kStateWords[static_cast<std::size_t>(state)];
 }
 
-constexpr std::string_view shown_name_of(ReportState state) {
+constexpr std::string_view display_name(ReportState state) {
   return state == ReportState::InDoubt ? "in doubt" : name_of(state);
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 /// The Command Post or the network has acted, so a failed write cannot undo it. After a restart the ledger
 /// has the state already.
-bool has_happened(ReportEvent event) {
+bool is_irreversible(ReportEvent event) {
   using enum ReportEvent;
   constexpr ReportEvent kHappened[] = {Recorded,   Rejected,  Throttled, Barred,
                                        Redirected, NeverLeft, Lost,      Restarted};
@@ -26,7 +26,7 @@ bool can_recover_from_status(const Report& report, ReportEvent event) {
 
 }  // namespace
 
-void ReportBook::carry_on(const ReportBook& before) {
+void ReportBook::adopt(const ReportBook& before) {
   for (const auto& [number, report] : before.reports_) put(report);
   unwritten_ = before.unwritten_;
   unwritten_runs_ = before.unwritten_runs_;
@@ -62,7 +62,7 @@ bool ReportBook::move(std::span<const Step> steps, Time time) {
     report.note = step.note;
     report.changed = time.stamp;
     if (step.edit) step.edit(report);
-    happened = happened || has_happened(step.event);
+    happened = happened || is_irreversible(step.event);
     soon = soon && can_recover_from_status(report, step.event);
   }
   if (!write(moved, happened, soon ? Flush::Soon : Flush::Now)) return false;

@@ -39,7 +39,7 @@ class ReportBook {
     for (Report& report : all) put(std::move(report));
   }
   /// Takes all reports and the unwritten steps.
-  void carry_on(const ReportBook& before);
+  void adopt(const ReportBook& before);
 
   /// Of the next report.
   std::int64_t next_number() const { return reports_.empty() ? 1 : reports_.rbegin()->first + 1; }

@@ -13,7 +13,7 @@
 namespace adit::dispatch {
 
 /// Reports that were in flight at the end of the last process.
-void Reports::doubt_those_in_flight(Time time) {
+void Reports::doubt_in_flight(Time time) {
   for (const auto& [number, report] : book_.all()) {
     last_sending_ = std::max(last_sending_, report.sending);
   }
@@ -24,7 +24,7 @@ void Reports::doubt_those_in_flight(Time time) {
 
 /// The report is certainly meant for the present run. If no status comes, a young one or one sent on purpose
 /// may go.
-bool Reports::may_go(const Report& report, Instant now) const {
+bool Reports::can_send(const Report& report, Instant now) const {
   if (barred_ || (is_page_ && !ordered_.contains(report.number))) return false;
   if (doubts_.is_pending(now)) return false;
   if (account_.is_fresh(now)) return true;
@@ -33,13 +33,13 @@ bool Reports::may_go(const Report& report, Instant now) const {
 }
 
 /// Whether a report that is posted now may be sent at once.
-bool Reports::may_go_first(const Report& report, Instant now) const {
-  return book_.sending() == nullptr && account_.waiting_here().empty() && may_go(report, now);
+bool Reports::can_go_first(const Report& report, Instant now) const {
+  return book_.sending() == nullptr && account_.waiting_here().empty() && can_send(report, now);
 }
 
 std::optional<std::int64_t> Reports::next(Instant now) const {
   for (const std::int64_t number : account_.waiting_here()) {
-    if (may_go(book_.at(number), now)) return number;
+    if (can_send(book_.at(number), now)) return number;
   }
   return std::nullopt;
 }
@@ -128,7 +128,7 @@ void Reports::on_ended(ReportEvent event, const std::string& note, Time time, co
 
 ReportEvent Reports::on_answered(const HttpAnswer& answer, Time time) {
   const auto reply = codec::read_report_reply(answer.body);
-  const Report* const another = reply ? told_of_another(*reply) : nullptr;
+  const Report* const another = reply ? find_other_report(*reply) : nullptr;
   const ReportEvent event = event_of(answer.status, reply && another == nullptr,
                                      reply ? Body::Json : body_of(answer.body), answer.is_unprocessed);
   const auto keep = [&](Report& report) {
@@ -151,7 +151,7 @@ ReportEvent Reports::on_answered(const HttpAnswer& answer, Time time) {
 
 /// The other sent report in `reply`, or null. Servers and proxies may repeat an answer, which is no evidence
 /// here.
-const Report* Reports::told_of_another(const icd::ReportReply& reply) const {
+const Report* Reports::find_other_report(const icd::ReportReply& reply) const {
   if (!reply.report || is_same(*reply.report, book_.sending()->report)) return nullptr;
   for (const Report* const other : book_.find_same(*reply.report)) {
     if (other->number != book_.sending()->number && other->sending != 0) return other;
@@ -160,7 +160,7 @@ const Report* Reports::told_of_another(const icd::ReportReply& reply) const {
 }
 
 void Reports::on_recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time) {
-  changes_.meet(reply, time);  // the answer decides the run
+  changes_.detect_change(reply, time);  // the answer decides the run
   const Effect effect = effect_of(reply);
   const bool is_strange = is_about_another(reply, book_.sending()->report);
   std::string note;
@@ -174,7 +174,7 @@ void Reports::on_recorded(const ReportBook::Edit& keep, const icd::ReportReply& 
     report.run = account_.run().number;
   });
   account_.on_answered(reply, time);
-  if (is_strange) account_.lose();
+  if (is_strange) account_.forget_expected();
 }
 
 Reports::Reports(const ReportRules& rules, Output& output)
@@ -193,10 +193,10 @@ void Reports::open(std::vector<Report> all, std::vector<Run> runs, Time time, co
   begin(std::move(runs), time, post);
 }
 
-void Reports::carry_on(Reports& before, Time time, const std::string& post) {
+void Reports::adopt(Reports& before, Time time, const std::string& post) {
   icd::require(before.sending() == nullptr);
-  clients_.carry_on(before.clients_);  // first, so that begin() can answer them
-  book_.carry_on(before.book_);
+  clients_.adopt(before.clients_);  // first, so that begin() can answer them
+  book_.adopt(before.book_);
   const auto runs = before.runs().all() | std::views::values;
   begin({runs.begin(), runs.end()}, time, post);
 }
@@ -205,11 +205,11 @@ void Reports::begin(std::vector<Run> runs, Time time, const std::string& post) {
   std::int64_t latest_run = 1;
   for (const auto& [number, report] : book_.all()) latest_run = std::max(latest_run, report.run);
   account_.open(std::move(runs), latest_run, post);
-  doubt_those_in_flight(time);
+  doubt_in_flight(time);
   for (const std::int64_t number : book_.waiting()) review_.compare_later(number);
   doubts_.open();
   doubts_.begin(time.now);
-  if (!post.empty() && run().post != post) changes_.change_post(post, time);
+  if (!post.empty() && run().post != post) changes_.change_command_post(post, time);
 }
 
 void Reports::follow(std::int64_t number, ReportAction action, Time time) {
@@ -219,7 +219,7 @@ void Reports::follow(std::int64_t number, ReportAction action, Time time) {
       break;
     case ReportAction::AnswerClients:
     case ReportAction::TellClients:
-      clients_.tell_all(number);
+      clients_.answer_all(number);
       break;
     case ReportAction::Ask:
       doubts_.on_lost(number, time.now);
@@ -230,7 +230,7 @@ void Reports::follow(std::int64_t number, ReportAction action, Time time) {
 bool Reports::accept(const PostedReport& posted, ClientId client, bool may_send, Time time) {
   Report report{
       .report = posted.report, .sender = posted.sender, .received = time.stamp, .changed = time.stamp};
-  report.run = meant_run().number;
+  report.run = expected_run().number;
   report.asked = posted.resubmit;
   const bool fresh = is_fresh(time.now);
   const Report* const same = review_.earlier(report);
@@ -238,19 +238,20 @@ bool Reports::accept(const PostedReport& posted, ClientId client, bool may_send,
   const bool repeats = same != nullptr && (fresh || !is_final(same->state));
   if (repeats && (!report.asked || (same->asked && !is_final(same->state)))) {
     if (is_final(same->state)) {
-      clients_.tell(client, *same);
+      clients_.answer_client(client, *same);
     } else {
       clients_.on_posted(same->number, time.now);
       clients_.add(client, same->number, time.now + rules_.answer_within);
     }
     return false;
   }
-  if (account_.waiting_at(meant_run().post).size() >= rules_.most_waiting) {
-    output_.tell(client,
-                 {.status = icd::Status::TooManyRequests,
-                  .sentence = icd::sentence(rules_.most_waiting,
-                                            " reports are queued already; this report was not accepted")},
-                 report);
+  if (account_.waiting_at(expected_run().post).size() >= rules_.most_waiting) {
+    output_.answer_client(
+        client,
+        {.status = icd::Status::TooManyRequests,
+         .sentence =
+             icd::sentence(rules_.most_waiting, " reports are queued already; this report was not accepted")},
+        report);
     return false;
   }
   Hold hold = fresh ? review_.reason_to_hold(report) : Hold{};
@@ -266,11 +267,11 @@ bool Reports::accept(const PostedReport& posted, ClientId client, bool may_send,
 bool Reports::accept_new(Report report, const Hold& hold, ClientId client, bool may_send, Time time) {
   const bool fresh = is_fresh(time.now);
   // Accepting and choosing in one write flush the disk once.
-  const bool now = may_send && hold.why.empty() && fresh && may_go_first(report, time.now);
+  const bool now = may_send && hold.why.empty() && fresh && can_go_first(report, time.now);
   const std::int64_t number = add(report, hold, now, time);
   if (number == 0) {
-    output_.tell(client, {.sentence = "the report could not be stored and was not accepted; post it again"},
-                 report);
+    output_.answer_client(
+        client, {.sentence = "the report could not be stored and was not accepted; post it again"}, report);
     return false;
   }
   clients_.add(client, number, time.now + rules_.answer_within);
@@ -307,23 +308,23 @@ std::map<std::string, std::size_t> Reports::waiting_elsewhere() const {
   std::map<std::string, std::size_t> counts;
   for (const std::int64_t number : book_.waiting()) {
     const std::int64_t its = book_.at(number).run;
-    if (!account_.runs().is_at(its, meant_run().post)) ++counts[account_.runs().find(its)->post];
+    if (!account_.runs().is_at(its, expected_run().post)) ++counts[account_.runs().find(its)->post];
   }
   return counts;
 }
 
-void Reports::status_heard(const icd::RunStatus& status, Instant asked, Time time) {
-  changes_.meet(status, time);
+void Reports::on_status(const icd::RunStatus& status, Instant asked, Time time) {
+  changes_.detect_change(status, time);
   account_.on_status(status, time);
   barred_ = is_page_ = false;  // the token and the address are right
   ordered_.clear();
-  book_.move(doubts_.hear(status, asked, time), time);
+  book_.move(doubts_.decide_by_status(status, asked, time), time);
   const std::int64_t open = doubts_.open_count();  // until this status
   doubts_.count(asked, time);
   if (!doubts_.has_open_group()) account_.settle(status, open, time);
 }
 
-void Reports::status_failed(NoStatus why, Time time) {
+void Reports::on_status_failed(NoStatus why, Time time) {
   if (why != NoStatus::NoAnswer) account_.on_dumb(time.now);
   is_page_ = why == NoStatus::Page;
   doubts_.on_failed(time);
@@ -345,16 +346,16 @@ std::optional<Instant> Reports::next_deadline() const {
 namespace {
 
 /// Unfinished reports at the Command Post that the settings name.
-struct Open {
+struct OpenReports {
   std::size_t waiting = 0, in_doubt = 0, held = 0;
   std::size_t all() const { return waiting + in_doubt + held; }
 };
 
-Open open_here(const Reports& reports) {
-  Open open;
+OpenReports open_here(const Reports& reports) {
+  OpenReports open;
   for (const std::int64_t number : reports.book().open()) {
     const Report& report = reports.book().at(number);
-    if (!reports.runs().is_at(report.run, reports.meant_run().post)) continue;
+    if (!reports.runs().is_at(report.run, reports.expected_run().post)) continue;
     open.waiting += report.state == ReportState::Queued ? 1 : 0;
     open.held += report.state == ReportState::Held ? 1 : 0;
     // A report in flight may still come into doubt.
@@ -365,7 +366,7 @@ Open open_here(const Reports& reports) {
 }
 
 /// "2 reports are queued, 1 is in doubt"
-std::string count_text(const Open& open) {
+std::string count_text(const OpenReports& open) {
   std::string text;
   const auto add = [&text](std::size_t count, const char* one, const char* many) {
     if (count == 0) return;
@@ -390,12 +391,12 @@ std::string describe_known_run(const Reports& reports, const std::string& post) 
 }  // namespace
 
 std::string describe_command_post_change(const Reports& reports, const std::string& post) {
-  const std::string& here = reports.meant_run().post;
+  const std::string& here = reports.expected_run().post;
   std::string text = "reports go to " + post + " from then on" + describe_known_run(reports, post);
-  const Open open = open_here(reports);
+  const OpenReports open = open_here(reports);
   if (open.all() == 0) return text + "; no report is queued, in doubt or held now";
   text += "; " + count_text(open);
-  if (!reports.meant_run().was_heard()) {
+  if (!reports.expected_run().was_heard()) {
     return text + ": the Command Post at " + here +
            " has not answered yet, so queued reports are sent to the first Command Post that answers";
   }
@@ -410,33 +411,33 @@ constexpr const char* kLost = "its content is lost from the ledger; post it agai
 constexpr const char* kSent = "the operator sent it";
 constexpr const char* kDisk = "the change could not be stored and was not made; try again";
 
-std::unexpected<std::string> no_such(std::int64_t number) {
+std::unexpected<std::string> not_found(std::int64_t number) {
   return std::unexpected(icd::sentence("there is no report ", number));
 }
 
-std::unexpected<std::string> cannot(const Report& report, const std::string& what) {
+std::unexpected<std::string> action_error(const Report& report, const std::string& what) {
   return std::unexpected(
-      icd::sentence("report ", report.number, " is ", shown_name_of(report.state), ": ", what));
+      icd::sentence("report ", report.number, " is ", display_name(report.state), ": ", what));
 }
 
 }  // namespace
 
 Reports::Outcome Reports::send(std::int64_t number, Time time) {
   const Report* const report = book_.find(number);
-  if (report == nullptr) return no_such(number);
+  if (report == nullptr) return not_found(number);
   if (transition(report->state, ReportEvent::Released) == nullptr) {
-    return cannot(*report, "to send it again, resubmit it");
+    return action_error(*report, "to send it again, resubmit it");
   }
-  if (report->is_lost()) return cannot(*report, kLost);
+  if (report->is_lost()) return action_error(*report, kLost);
   if (review_.awaits_undo(number)) {
     return end_undo(number, kSent, time) ? Outcome(number) : std::unexpected(kDisk);
   }
   const bool decided = report->state == ReportState::InDoubt;
-  const Report* const other = decided ? review_.answered_later(*report) : review_.twin(*report);
+  const Report* const other = decided ? review_.answered_later(*report) : review_.find_duplicate(*report);
   if (other != nullptr) {
-    return cannot(*report,
-                  icd::sentence("report ", other->number, " is the same and is ", shown_name_of(other->state),
-                                " in this run; to send it again, resubmit that report"));
+    return action_error(
+        *report, icd::sentence("report ", other->number, " is the same and is ", display_name(other->state),
+                               " in this run; to send it again, resubmit that report"));
   }
   if (decided && !doubts_.blur(number, time)) return std::unexpected(kDisk);
   const bool moved = book_.move({number, ReportEvent::Released, kSent,
@@ -444,7 +445,7 @@ Reports::Outcome Reports::send(std::int64_t number, Time time) {
                                    sent.asked = true;
                                    sent.same_as = 0;
                                    sent.tries = 0;
-                                   sent.run = meant_run().number;
+                                   sent.run = expected_run().number;
                                  }},
                                 time);
   if (!moved) return std::unexpected(kDisk);
@@ -455,13 +456,13 @@ Reports::Outcome Reports::send(std::int64_t number, Time time) {
 
 Reports::Outcome Reports::hold(std::int64_t number, Time time) {
   const Report* const report = book_.find(number);
-  if (report == nullptr) return no_such(number);
+  if (report == nullptr) return not_found(number);
   const bool waits = review_.awaits_undo(number);
   const ReportEvent event = waits ? ReportEvent::Held : ReportEvent::HeldBack;
   if (transition(report->state, event) == nullptr || (report->state == ReportState::Held && !waits)) {
-    return cannot(*report, report->state == ReportState::Held ? "it is held already"
-                           : is_final(report->state)          ? "only a queued report can be held"
-                                                              : "it may have been sent already");
+    return action_error(*report, report->state == ReportState::Held ? "it is held already"
+                                 : is_final(report->state)          ? "only a queued report can be held"
+                                                                    : "it may have been sent already");
   }
   if (!book_.move({number, event, "the operator held it"}, time)) return std::unexpected(kDisk);
   review_.on_decided(number);
@@ -470,12 +471,12 @@ Reports::Outcome Reports::hold(std::int64_t number, Time time) {
 
 Reports::Outcome Reports::withdraw(std::int64_t number, Time time) {
   const Report* const report = book_.find(number);
-  if (report == nullptr) return no_such(number);
+  if (report == nullptr) return not_found(number);
   if (transition(report->state, ReportEvent::Withdrawn) == nullptr) {
-    return cannot(*report, is_final(report->state) ? "it is finished and cannot be withdrawn"
-                           : report->state == ReportState::Sending
-                               ? "its sending has begun, so it cannot be undone"
-                               : "it may have been recorded; send it, or settle it");
+    return action_error(*report, is_final(report->state) ? "it is finished and cannot be withdrawn"
+                                 : report->state == ReportState::Sending
+                                     ? "its sending has begun, so it cannot be undone"
+                                     : "it may have been recorded; send it, or settle it");
   }
   const char* const why = review_.awaits_undo(number) ? "the operator undid it" : "";
   if (!book_.move({number, ReportEvent::Withdrawn, why}, time)) return std::unexpected(kDisk);
@@ -485,9 +486,9 @@ Reports::Outcome Reports::withdraw(std::int64_t number, Time time) {
 
 Reports::Outcome Reports::settle(std::int64_t number, Time time) {
   const Report* const report = book_.find(number);
-  if (report == nullptr) return no_such(number);
+  if (report == nullptr) return not_found(number);
   if (transition(report->state, ReportEvent::Settled) == nullptr) {
-    return cannot(*report, "only a report in doubt can be settled");
+    return action_error(*report, "only a report in doubt can be settled");
   }
   const bool done = doubts_.blur(number, time) &&
                     book_.move({number, ReportEvent::Settled, "the operator settled it"}, time);
@@ -498,23 +499,24 @@ Reports::Outcome Reports::settle(std::int64_t number, Time time) {
 
 Reports::Outcome Reports::correct(std::int64_t number, const icd::ArtifactReport& to, Time time) {
   const Report* const report = book_.find(number);
-  if (report == nullptr) return no_such(number);
+  if (report == nullptr) return not_found(number);
   const ReportTransition* const row = transition(report->state, ReportEvent::Corrected);
-  if (row == nullptr) return cannot(*report, "only a held report can be corrected");
+  if (row == nullptr) return action_error(*report, "only a held report can be corrected");
   if (is_same(report->report, to))
-    return cannot(*report, "the correction is the same report; send it instead");
+    return action_error(*report, "the correction is the same report; send it instead");
   Report next{.number = book_.next_number(),
               .report = to,
               .sender = "operator",
               .received = time.stamp,
               .changed = time.stamp,
               .note = icd::sentence("corrects report ", number, ", ", describe(report->report)),
-              .run = meant_run().number,
+              .run = expected_run().number,
               .asked = true};
   if (!next.report.robot) next.report.robot = report->report.robot;
-  if (const Report* const other = review_.twin(next); other != nullptr) {
-    return cannot(*report, icd::sentence("report ", other->number, " is the same as the correction and is ",
-                                         shown_name_of(other->state), " in this run"));
+  if (const Report* const other = review_.find_duplicate(next); other != nullptr) {
+    return action_error(*report,
+                        icd::sentence("report ", other->number, " is the same as the correction and is ",
+                                      display_name(other->state), " in this run"));
   }
   Report corrected = *report;
   corrected.state = row->to;
@@ -531,15 +533,15 @@ Reports::Outcome Reports::correct(std::int64_t number, const icd::ArtifactReport
 
 Reports::Outcome Reports::resubmit(std::int64_t number, Time time) {
   const Report* const report = book_.find(number);
-  if (report == nullptr) return no_such(number);
-  if (!is_final(report->state)) return cannot(*report, "it is not finished yet");
-  if (report->is_lost()) return cannot(*report, kLost);
+  if (report == nullptr) return not_found(number);
+  if (!is_final(report->state)) return action_error(*report, "it is not finished yet");
+  if (report->is_lost()) return action_error(*report, kLost);
   for (const Report* const other : review_.same_in_run(report->report)) {
     if (other->asked && !is_final(other->state)) return other->number;  // pressed twice, sent once
   }
   Report again{.report = report->report, .sender = "operator", .received = time.stamp, .changed = time.stamp};
   again.note = icd::sentence("report ", number, " again");
-  again.run = meant_run().number;
+  again.run = expected_run().number;
   again.asked = true;
   const std::int64_t made = add(std::move(again), {}, false, time);
   return made != 0 ? Outcome(made) : std::unexpected(kDisk);

@@ -47,8 +47,8 @@ struct PostedReport {
 /// step has effects.
 ///
 /// At most one request is in flight. After choose() returns a report, or accept() true, call exactly one of
-/// on_answered(), never_left() and on_lost() before the next request. After a request for the status, call
-/// status_heard() or status_failed().
+/// on_answered(), on_never_sent() and on_lost() before the next request. After a request for the status, call
+/// on_status() or on_status_failed().
 class Reports {
  public:
   using Outcome = std::expected<std::int64_t, std::string>;  // a report's number, or why not
@@ -61,16 +61,16 @@ class Reports {
   void open(std::vector<Report> all, std::vector<Run> runs, Time time, const std::string& post = "");
   /// Starts from `before`, which has no report in flight: with its steps that the ledger lacks, because the
   /// disk failed, and with its clients and their deadlines.
-  void carry_on(Reports& before, Time time, const std::string& post);
+  void adopt(Reports& before, Time time, const std::string& post);
   /// The settings name `post`. Call open() after the request in flight. Reports that arrive before that
   /// belong to the run at `post`, also after a restart.
   void prepare_move(const std::string& post, Time time) { changes_.prepare_move(post, time); }
   /// Waiting clients keep their deadlines.
-  void go_by(const ReportRules& rules) { rules_ = rules; }
+  void set_rules(const ReportRules& rules) { rules_ = rules; }
   /// `spacing`: the time between requests by the Command Post's limit.
   void set_spacing(Instant::duration spacing) { account_.set_spacing(spacing); }
   /// Stamps that were read from disk may be from before the step.
-  void clock_stepped(const ClockStep& step) { account_.clock_stepped(step); }
+  void on_clock_step(const ClockStep& step) { account_.on_clock_step(step); }
 
   /// Accepts a report. Output answers the client now or later. `may_send`: no request is in flight and the
   /// rate limit allows one. True: the report is on disk as sending(); send it.
@@ -81,11 +81,11 @@ class Reports {
   /// failed.
   const Report* choose(Time time);
   ReportEvent on_answered(const HttpAnswer& answer, Time time);
-  void never_left(const std::string& why, Time time) { on_ended(ReportEvent::NeverLeft, why, time); }
+  void on_never_sent(const std::string& why, Time time) { on_ended(ReportEvent::NeverLeft, why, time); }
   void on_lost(const std::string& why, Time time) { on_ended(ReportEvent::Lost, why, time); }
   /// `asked`: time of the request.
-  void status_heard(const icd::RunStatus& status, Instant asked, Time time);
-  void status_failed(NoStatus why, Time time);
+  void on_status(const icd::RunStatus& status, Instant asked, Time time);
+  void on_status_failed(NoStatus why, Time time);
 
   /// Answers clients whose time is up, repeats failed writes. Call at next_deadline() at the latest.
   void tick(Time time);
@@ -107,19 +107,21 @@ class Reports {
   std::int64_t declare_new_run(Time time) { return changes_.declare(time); }
 
   /// The report that a client waits for. nullopt: the client does not wait.
-  std::optional<std::int64_t> awaited_by(ClientId client) const { return clients_.awaited_by(client); }
+  std::optional<std::int64_t> awaited_report(ClientId client) const {
+    return clients_.awaited_report(client);
+  }
   const ReportBook& book() const { return book_; }
   const Run& run() const { return account_.run(); }
   const Runs& runs() const { return account_.runs(); }
   /// The run of a report that is posted now: run(), or the run of prepare_move().
-  const Run& meant_run() const { return account_.meant_run(); }
+  const Run& expected_run() const { return account_.expected_run(); }
   /// Queued reports for the Command Post of the present run, oldest first.
   std::vector<std::int64_t> waiting_here() const { return account_.waiting_here(); }
   /// Numbers of queued reports for other Command Posts than the settings name, by address.
   std::map<std::string, std::size_t> waiting_elsewhere() const;
   const Report* sending() const { return book_.sending(); }
   /// Lost reports. New reports are held until the operator settles them.
-  std::vector<const Report*> lost_here() const { return review_.lost_here(); }
+  std::vector<const Report*> lost_reports() const { return review_.lost_reports(); }
   /// The status expected now. nullopt: uncertain, or the counts prove no report.
   std::optional<icd::RunStatus> expected_status(Instant now) const { return account_.expected_status(now); }
   /// When a held report is sent unless the operator withdraws it, in seconds since 1970. nullopt: the
@@ -131,17 +133,17 @@ class Reports {
  private:
   void begin(std::vector<Run> runs, Time time, const std::string& post);
   void follow(std::int64_t number, ReportAction action, Time time);
-  bool is_fresh(Instant now) const { return &meant_run() == &run() && account_.is_fresh(now); }
+  bool is_fresh(Instant now) const { return &expected_run() == &run() && account_.is_fresh(now); }
   bool accept_new(Report report, const Hold& hold, ClientId client, bool may_send, Time time);
   std::int64_t add(Report report, const Hold& hold, bool now, Time time, std::span<const Report> before = {});
   bool end_undo(std::int64_t number, const std::string& note, Time time);
-  void doubt_those_in_flight(Time time);
+  void doubt_in_flight(Time time);
   std::optional<std::int64_t> next(Instant now) const;
-  bool may_go(const Report& report, Instant now) const;
-  bool may_go_first(const Report& report, Instant now) const;
+  bool can_send(const Report& report, Instant now) const;
+  bool can_go_first(const Report& report, Instant now) const;
   bool check(std::int64_t number, Time time);
   void prepare(Report& report, Time time);
-  const Report* told_of_another(const icd::ReportReply& reply) const;
+  const Report* find_other_report(const icd::ReportReply& reply) const;
   void on_recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time);
   void on_ended(ReportEvent event, const std::string& note, Time time,
                 const ReportBook::Edit& edit = nullptr);

@@ -19,7 +19,7 @@ std::string change(std::int64_t before, std::int64_t now) {
 
 /// "reports left went from 20 to 18, the score stayed 3, with 2 reports in doubt"
 std::string figures(const icd::RunStatus& before, std::int64_t doubts, std::int64_t beside,
-                    const SentSince& since, const icd::RunStatus& now) {
+                    const LaterReports& since, const icd::RunStatus& now) {
   std::string text = icd::sentence("reports left ", change(before.remaining_reports, now.remaining_reports),
                                    ", the score ", change(before.score, now.score));
   if (since.scored > 0) text += icd::sentence(", ", since.scored, " of it by reports sent since");
@@ -33,8 +33,8 @@ std::string figures(const icd::RunStatus& before, std::int64_t doubts, std::int6
 
 }  // namespace
 
-Evidence weigh(const icd::RunStatus& before, std::int64_t doubts, std::int64_t beside, const SentSince& since,
-               const icd::RunStatus& now) {
+Evidence weigh(const icd::RunStatus& before, std::int64_t doubts, std::int64_t beside,
+               const LaterReports& since, const icd::RunStatus& now) {
   const std::int64_t all = doubts + beside;
   const std::int64_t used = before.remaining_reports - since.scored - now.remaining_reports;
   const std::int64_t points = now.score - before.score - since.points;
@@ -56,7 +56,7 @@ Evidence weigh(const icd::RunStatus& before, std::int64_t doubts, std::int64_t b
   return {Finding::Recorded, seen, alike ? std::optional<std::int64_t>(points > 0 ? 1 : 0) : std::nullopt};
 }
 
-Finding Inquiry::hear(const Evidence& evidence, double run_clock, Instant asked, Instant now) {
+Finding Inquiry::add_evidence(const Evidence& evidence, double run_clock, Instant asked, Instant now) {
   Finding finding = evidence.finding;
   if (finding == Finding::NotRecorded && is_stalled(run_clock, now)) finding = Finding::Silent;
   if (!first_heard_) {
@@ -115,7 +115,7 @@ void RunAccount::open(std::vector<Run> all, std::int64_t latest, const std::stri
 }
 
 bool RunAccount::is_of_run(const Report& report) const {
-  return report.run == meant_run().number || report.state == ReportState::Sending;
+  return report.run == expected_run().number || report.state == ReportState::Sending;
 }
 
 bool RunAccount::is_unclaimed(const Report& report) const {
@@ -153,7 +153,7 @@ bool RunAccount::is_grant(const icd::RunStatus& status, Time time) const {
 }
 
 NameCheck RunAccount::check_name(const Run& before, const icd::RunStatus& status, Time time) const {
-  return dispatch::check_name(before, status, {unheard(before, time), silence(time).since_status});
+  return dispatch::check_name(before, status, {silence_of(before, time), silence(time).since_status});
 }
 
 const Run* RunAccount::find_by_team(const std::string& team) const {
@@ -170,8 +170,8 @@ const Run* RunAccount::find_by_name(const std::string& id) const {
   });
 }
 
-const Run* RunAccount::maybe_present(const std::function<bool(const Run&)>& fits) const {
-  for (const std::int64_t number : runs_.maybe_present()) {
+const Run* RunAccount::find_possible_run(const std::function<bool(const Run&)>& fits) const {
+  for (const std::int64_t number : runs_.possible_runs()) {
     const Run* const each = runs_.find(number);
     if (each != &run() && fits(*each)) return each;
   }
@@ -180,19 +180,19 @@ const Run* RunAccount::maybe_present(const std::function<bool(const Run&)>& fits
 
 Signs RunAccount::signs_against(const Run& earlier) const {
   Signs signs;
-  for (const std::int64_t number : runs_.maybe_present()) {
+  for (const std::int64_t number : runs_.possible_runs()) {
     if (number == earlier.number) break;
     signs |= runs_.find(number)->signs;
   }
   return signs;
 }
 
-bool RunAccount::may_have_begun_since(const Run& earlier) const {
-  return !run().last || can_be_young(run().last->run_clock, seconds_between(earlier.heard, run().heard));
+bool RunAccount::can_have_begun_since(const Run& earlier) const {
+  return !run().last || can_be_new(run().last->run_clock, seconds_between(earlier.heard, run().heard));
 }
 
 /// By stamps, less the step and the possible lead after a boot.
-double RunAccount::unheard(const Run& run, Time time) const {
+double RunAccount::silence_of(const Run& run, Time time) const {
   return std::max(0.0, clock_step_.seconds_between(run.heard, time.stamp) - kClockAhead);
 }
 
@@ -201,7 +201,7 @@ Silence RunAccount::silence(Time time) const {
   const auto since = [&time](Instant last) { return std::chrono::duration<double>(time.now - last).count(); };
   Silence silence;
   if (status_came_) silence.since_status = since(*status_came_);
-  silence.at_least = clock_at_ ? since(*clock_at_) : unheard(run(), time);
+  silence.at_least = clock_at_ ? since(*clock_at_) : silence_of(run(), time);
   return silence;
 }
 
@@ -247,7 +247,7 @@ void RunAccount::adopt(std::int64_t number, std::span<const Report> steps, Time 
 }
 
 void RunAccount::merge_into(std::int64_t number, std::span<const Report> steps, Time time) {
-  const auto numbers = runs_.maybe_present();  // from the latest to the earliest
+  const auto numbers = runs_.possible_runs();  // from the latest to the earliest
   Run merged = *runs_.find(number);
   for (auto each = std::ranges::find(numbers, number); each != numbers.begin();) {
     const Run& later = *runs_.find(*--each);
@@ -284,7 +284,7 @@ void RunAccount::forget_counts() {
 }
 
 /// As in Inquiry: a running clock shows at least a quarter of the time. Before the start it stands.
-bool RunAccount::stands(const icd::RunStatus& status, Time time) const {
+bool RunAccount::is_clock_stopped(const icd::RunStatus& status, Time time) const {
   const auto& clock = run().status_clock;
   if (status.run_clock <= 0) return true;
   if (!clock || !clock->runs) return false;
@@ -292,7 +292,7 @@ bool RunAccount::stands(const icd::RunStatus& status, Time time) const {
 }
 
 void RunAccount::on_status(const icd::RunStatus& status, Time time) {
-  is_stopped_ = stands(status, time);
+  is_stopped_ = is_clock_stopped(status, time);
   heard_ = clock_at_ = status_came_ = time.now;
   Run& run = runs_.present();
   // Signs of another run are written at once.
@@ -330,7 +330,7 @@ void RunAccount::on_answered(const icd::ReportReply& reply, Time time) {
   known_->since.points += reply.score_change;
 }
 
-void RunAccount::lose(Instant until) {
+void RunAccount::forget_expected(Instant until) {
   known_.reset();
   uncertain_until_ = until;
 }

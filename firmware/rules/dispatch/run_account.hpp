@@ -14,7 +14,7 @@
 namespace adit::dispatch {
 
 /// Effect of Adit's reports after the first one in doubt.
-struct SentSince {
+struct LaterReports {
   std::int64_t scored = 0;   // remaining reports that they used up
   std::int64_t points = 0;   // points that they gained, if certain
   std::int64_t unclear = 0;  // reports that may have gained one more
@@ -38,8 +38,8 @@ struct Evidence {
 /// Compares the present status with the status expected before the first of `doubts` reports was sent. A
 /// recorded report lowers remaining_reports by one (ICD 5.1) and gains 0 or 1 point (ICD 5.2). `beside`:
 /// other reports in doubt that may have changed the counts since.
-Evidence weigh(const icd::RunStatus& before, std::int64_t doubts, std::int64_t beside, const SentSince& since,
-               const icd::RunStatus& now);
+Evidence weigh(const icd::RunStatus& before, std::int64_t doubts, std::int64_t beside,
+               const LaterReports& since, const icd::RunStatus& now);
 
 struct InquiryPolicy {
   /// From the loss to a request whose status may say "not recorded". The Command Post may record a report so
@@ -56,11 +56,11 @@ class Inquiry {
   Inquiry(const InquiryPolicy& policy, Instant lost) : policy_(policy), lost_(lost) {}
 
   /// Adds the evidence of a status that was requested at `asked`. Returns the certain result, else Silent.
-  Finding hear(const Evidence& evidence, double run_clock, Instant asked, Instant now);
+  Finding add_evidence(const Evidence& evidence, double run_clock, Instant asked, Instant now);
   void on_asked(Instant now) { asked_ = now; }
   void on_failed(Instant now) { in_vain_ = !is_pending(now); }
   /// No result for too long. Adit goes on asking, and the operator may decide.
-  bool is_in_vain() const { return in_vain_; }
+  bool has_timed_out() const { return in_vain_; }
 
   Instant next_ask(Instant now) const;
   /// Other reports must wait. A second lost report would make the counts ambiguous.
@@ -89,10 +89,10 @@ class RunAccount {
   explicit RunAccount(ReportBook& book) : book_(book) {}
 
   /// The step that is subtracted from the run's silence.
-  void clock_stepped(const ClockStep& step) { clock_step_ = step; }
+  void on_clock_step(const ClockStep& step) { clock_step_ = step; }
   double seconds_between(double from, double until) const { return clock_step_.seconds_between(from, until); }
   /// A run that began after the last status of `earlier` may show the last clock of the present run.
-  bool may_have_begun_since(const Run& earlier) const;
+  bool can_have_begun_since(const Run& earlier) const;
   /// `latest`: Runs::open().
   void open(std::vector<Run> all, std::int64_t latest, const std::string& post);
 
@@ -102,8 +102,8 @@ class RunAccount {
   double status_at() const { return status_at_; }
   const Runs& runs() const { return runs_; }
   /// Runs::expected_run().
-  const Run& meant_run() const { return runs_.expected_run(); }
-  /// True for reports of meant_run(), and for the one in flight, which a later run may record.
+  const Run& expected_run() const { return runs_.expected_run(); }
+  /// True for reports of expected_run(), and for the one in flight, which a later run may record.
   bool is_of_run(const Report& report) const;
   /// Answered before the run was noticed, and its name is not known: it may be of the earlier run.
   bool is_unclaimed(const Report& report) const;
@@ -129,7 +129,7 @@ class RunAccount {
   /// Last earlier run named `id` here, or null.
   const Run* find_by_name(const std::string& id) const;
   /// Latest run that the present one may still be and that `fits`, or null.
-  const Run* maybe_present(const std::function<bool(const Run&)>& fits) const;
+  const Run* find_possible_run(const std::function<bool(const Run&)>& fits) const;
   /// The signs that the present run is not `earlier`, which it may still be.
   Signs signs_against(const Run& earlier) const;
 
@@ -158,9 +158,9 @@ class RunAccount {
   void on_answered(const icd::ReportReply& reply, Time time);
   void on_dumb(Instant now) { dumb_at_ = now; }
   /// A report came into doubt: the expected status is uncertain.
-  void lose() { known_.reset(); }
+  void forget_expected() { known_.reset(); }
   /// The same until `until`, because a report that the operator decided may still be recorded.
-  void lose(Instant until);
+  void forget_expected(Instant until);
   /// Compares a status with the expected one, and starts from it. Call it only while each doubt that the
   /// counts may decide is counted. `open`: other doubts, each of which may explain a report and a point.
   void settle(const icd::RunStatus& status, std::int64_t open, Time time);
@@ -174,14 +174,14 @@ class RunAccount {
   struct LastStatus {
     icd::RunStatus status;
     Instant heard;
-    SentSince since;
+    LaterReports since;
   };
   void forget_counts();
   void write_down(double stamp);
   /// Seconds, at least, without word of `run`.
-  double unheard(const Run& run, Time time) const;
+  double silence_of(const Run& run, Time time) const;
   Silence silence(Time time) const;
-  bool stands(const icd::RunStatus& status, Time time) const;
+  bool is_clock_stopped(const icd::RunStatus& status, Time time) const;
 
   ReportBook& book_;
   Runs runs_;

@@ -17,7 +17,7 @@ constexpr const char* kOldRun = "; it is of an earlier run; post it again to sen
 
 }  // namespace
 
-void WaitingClients::carry_on(WaitingClients& before) {
+void WaitingClients::adopt(WaitingClients& before) {
   clients_ = std::exchange(before.clients_, {});
   posted_at_ = std::exchange(before.posted_at_, {});
 }
@@ -28,25 +28,25 @@ bool WaitingClients::is_young(const Report& report, Instant now) const {
 }
 
 template <class Which>
-void WaitingClients::tell_those(Which which) {
+void WaitingClients::answer_matching(Which which) {
   std::vector<std::pair<ClientId, std::int64_t>> told;
   std::erase_if(clients_, [&](const auto& item) {
     const bool out = which(item.second);
     if (out) told.emplace_back(item.first, item.second.number);
     return out;
   });
-  for (const auto& [client, number] : told) tell(client, book_.at(number));
+  for (const auto& [client, number] : told) answer_client(client, book_.at(number));
 }
 
-void WaitingClients::tell_all(std::int64_t number) {
-  tell_those([number](const Client& client) { return client.number == number; });
+void WaitingClients::answer_all(std::int64_t number) {
+  answer_matching([number](const Client& client) { return client.number == number; });
 }
 
 void WaitingClients::hand_over(std::int64_t number, const Report& earlier) {
   for (auto& [id, client] : clients_) {
     if (client.number == number) client.number = earlier.number;
   }
-  if (is_final(earlier.state)) return tell_all(earlier.number);
+  if (is_final(earlier.state)) return answer_all(earlier.number);
   if (const auto posted = posted_at_.find(number); posted != posted_at_.end()) {
     Instant& at = posted_at_.try_emplace(earlier.number, posted->second).first->second;
     at = std::max(at, posted->second);
@@ -54,18 +54,18 @@ void WaitingClients::hand_over(std::int64_t number, const Report& earlier) {
 }
 
 void WaitingClients::tick(Instant now) {
-  tell_those([now](const Client& client) { return client.deadline <= now; });
+  answer_matching([now](const Client& client) { return client.deadline <= now; });
   std::erase_if(posted_at_, [now](const auto& item) { return now - item.second > kYoung; });
 }
 
 void WaitingClients::dismiss(bool all) {
   stopping_ = true;
   const Report* const sending = all ? nullptr : book_.sending();
-  tell_those(
+  answer_matching(
       [sending](const Client& client) { return sending == nullptr || client.number != sending->number; });
 }
 
-std::optional<std::int64_t> WaitingClients::awaited_by(ClientId client) const {
+std::optional<std::int64_t> WaitingClients::awaited_report(ClientId client) const {
   const auto found = clients_.find(client);
   return found == clients_.end() ? std::nullopt : std::optional(found->second.number);
 }
@@ -77,7 +77,7 @@ std::optional<Instant> WaitingClients::next_deadline() const {
   return first->second.deadline;
 }
 
-void WaitingClients::tell(ClientId client, const Report& report) {
+void WaitingClients::answer_client(ClientId client, const Report& report) {
   const std::string name = icd::sentence("report ", report.number);
   const std::string why = report.note.empty() ? "" : " (" + report.note + ")";
   const char* const again = account_.is_of_run(report) ? kAskAgain : kOldRun;
@@ -112,14 +112,14 @@ void WaitingClients::tell(ClientId client, const Report& report) {
       answer.sentence = name + " is in flight, and may or may not have been recorded yet" + again;
       break;
   }
-  output_.tell(client, answer, report);
+  output_.answer_client(client, answer, report);
 }
 
 namespace {
 
 /// Moves a report from a run without any status to run `run`. The operator's order to send it applied to the
 /// other run alone. If it was sent before that order, this run may have it, so it is held.
-Report passed_on(Report report, std::int64_t run, Time time) {
+Report transfer_report(Report report, std::int64_t run, Time time) {
   const bool was_ordered = report.run != run && std::exchange(report.asked, false);
   report.run = run;
   report.note = "";
@@ -168,13 +168,13 @@ void RunChanges::prepare_move(const std::string& post, Time time) {
   for (const std::int64_t number : book_.waiting()) {
     const Run* const meant = account_.runs().find(book_.at(number).run);
     if (meant == nullptr || meant->was_heard() || meant == &run) continue;
-    steps.push_back(passed_on(book_.at(number), run.number, time));
+    steps.push_back(transfer_report(book_.at(number), run.number, time));
     review_.compare_later(number);
   }
   if (!steps.empty()) book_.change(steps, run);
 }
 
-void RunChanges::change_post(const std::string& post, Time time) {
+void RunChanges::change_command_post(const std::string& post, Time time) {
   const std::string from = account_.run().post;
   const Run* const known = account_.runs().latest_at(post);
   const std::int64_t next = known != nullptr ? known->number : account_.runs().next_number();
@@ -183,7 +183,7 @@ void RunChanges::change_post(const std::string& post, Time time) {
     const Report& report = book_.at(number);
     const Run* const meant = account_.runs().find(report.run);
     if (meant != nullptr && !meant->was_heard()) {
-      steps.push_back(passed_on(report, next, time));
+      steps.push_back(transfer_report(report, next, time));
     } else if (meant == &account_.run() && !from.empty()) {
       Report& kept = steps.emplace_back(report);
       kept.changed = time.stamp;
@@ -199,7 +199,7 @@ void RunChanges::change_post(const std::string& post, Time time) {
   doubts_.begin_run(doubts, time);
 }
 
-void RunChanges::meet(const icd::RunStatus& status, Time time) {
+void RunChanges::detect_change(const icd::RunStatus& status, Time time) {
   judge_name(status, time);
   const auto another = account_.another(status, time);
   const Run& run = account_.run();
@@ -225,7 +225,7 @@ void RunChanges::meet(const icd::RunStatus& status, Time time) {
 void RunChanges::judge_name(const icd::RunStatus& status, Time time) {
   const Run& run = account_.run();
   if (!run.signs.name || run.may_be == 0 || run.last) return;
-  const Run* const before = account_.maybe_present([](const Run& each) { return each.last.has_value(); });
+  const Run* const before = account_.find_possible_run([](const Run& each) { return each.last.has_value(); });
   const NameCheck check = before == nullptr ? NameCheck::Unknown : account_.check_name(*before, status, time);
   if (check == NameCheck::Unknown) return;
   if (check == NameCheck::Confirmed) {
@@ -238,20 +238,20 @@ void RunChanges::judge_name(const icd::RunStatus& status, Time time) {
 }
 
 /// A nameless answer has only its clock. A name outranks it, unless the Command Post renames its run.
-void RunChanges::meet(const icd::ReportReply& reply, Time time) {
+void RunChanges::detect_change(const icd::ReportReply& reply, Time time) {
   icd::ReportReply evidence = reply;
   if (!account_.runs().name_trouble().empty()) evidence.run.clear();
   const std::string& name = evidence.run;
   if (const auto another = account_.another(evidence, time)) {
-    return another->signs.name ? meet_name(name, *another, time)
+    return another->signs.name ? detect_name(name, *another, time)
                                : begin(*another, account_.run().number, std::nullopt, time);
   }
   if (name.empty() || !account_.run().id.empty()) return;
-  const Run* const before = account_.maybe_present([](const Run& run) { return !run.id.empty(); });
+  const Run* const before = account_.find_possible_run([](const Run& run) { return !run.id.empty(); });
   if (before == nullptr) return claim(name, time);
   if (before->id != name) {
     // A referee set the clock of a run that gets another name with each answer.
-    if (account_.signs_against(*before).is_clock_alone() && !account_.may_have_begun_since(*before)) return;
+    if (account_.signs_against(*before).is_clock_alone() && !account_.can_have_begun_since(*before)) return;
     account_.exclude(before->number);
     return claim(name, time);
   }
@@ -261,8 +261,8 @@ void RunChanges::meet(const icd::ReportReply& reply, Time time) {
 }
 
 /// The present run has another name.
-void RunChanges::meet_name(const std::string& name, const AnotherRun& another, Time time) {
-  const Run* const maybe = account_.maybe_present([&name](const Run& run) { return run.id == name; });
+void RunChanges::detect_name(const std::string& name, const AnotherRun& another, Time time) {
+  const Run* const maybe = account_.find_possible_run([&name](const Run& run) { return run.id == name; });
   if (maybe != nullptr && !account_.signs_against(*maybe).agree()) {
     return return_to(*maybe, Repeats::Join, time);
   }
@@ -367,7 +367,7 @@ void RunChanges::adopt(const Run& known, const std::string& why, Time time) {
 /// that were held for another run are queued again. Joined repeats get the originals' answers.
 void RunChanges::return_to(const Run& known, Repeats held, Time time) {
   const std::int64_t number = known.number;
-  const auto maybe = account_.runs().maybe_present();
+  const auto maybe = account_.runs().possible_runs();
   const std::set<std::int64_t> merged(maybe.begin(), std::ranges::find(maybe, number));
   const Signs signs = account_.signs_against(known);
   const auto has_blurred_counts = [&](const Report& report) {
@@ -439,8 +439,8 @@ void RunChanges::clear_held(Time time) {
 
 std::int64_t RunChanges::declare(Time time) {
   constexpr const char* kWhy = "the operator declared it";
-  if (&account_.meant_run() != &account_.run()) {
-    return account_.announce(kWhy, account_.meant_run().post, time);
+  if (&account_.expected_run() != &account_.run()) {
+    return account_.announce(kWhy, account_.expected_run().post, time);
   }
   begin({kWhy, {}}, 0, std::nullopt, time);
   return account_.run().number;

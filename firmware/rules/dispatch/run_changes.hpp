@@ -21,7 +21,7 @@ class WaitingClients {
       : book_(book), account_(account), output_(output) {}
 
   /// Takes over the clients of `before` with their deadlines.
-  void carry_on(WaitingClients& before);
+  void adopt(WaitingClients& before);
 
   /// The report was posted now: it is meant for the present run.
   void on_posted(std::int64_t number, Instant now) { posted_at_[number] = now; }
@@ -29,9 +29,9 @@ class WaitingClients {
 
   void add(ClientId client, std::int64_t number, Instant deadline) { clients_[client] = {number, deadline}; }
   /// Gives the client the report's stored answer, or Adit's sentence about its state.
-  void tell(ClientId client, const Report& report);
+  void answer_client(ClientId client, const Report& report);
   /// Answers and removes the clients of a report.
-  void tell_all(std::int64_t number);
+  void answer_all(std::int64_t number);
   /// `number` repeats `earlier`: its clients wait for `earlier` with their deadlines, or are told if it is
   /// final.
   void hand_over(std::int64_t number, const Report& earlier);
@@ -42,7 +42,7 @@ class WaitingClients {
   bool is_stopping() const { return stopping_; }
 
   /// The report that a client waits for. nullopt: the client does not wait.
-  std::optional<std::int64_t> awaited_by(ClientId client) const;
+  std::optional<std::int64_t> awaited_report(ClientId client) const;
   std::optional<Instant> next_deadline() const;
 
  private:
@@ -51,7 +51,7 @@ class WaitingClients {
     Instant deadline;
   };
   template <class Which>
-  void tell_those(Which which);
+  void answer_matching(Which which);
 
   const ReportBook& book_;
   const RunAccount& account_;
@@ -72,17 +72,17 @@ class RunChanges {
   /// Reports::prepare_move().
   void prepare_move(const std::string& post, Time time);
   /// The settings name `post`. Keeps queued reports for the old Command Post.
-  void change_post(const std::string& post, Time time);
+  void change_command_post(const std::string& post, Time time);
   /// Begins or continues another run if the status or the answer is of another one.
-  void meet(const icd::RunStatus& status, Time time);
-  void meet(const icd::ReportReply& reply, Time time);
+  void detect_change(const icd::RunStatus& status, Time time);
+  void detect_change(const icd::ReportReply& reply, Time time);
   /// The operator declares a new run. Returns its number.
   std::int64_t declare(Time time);
 
  private:
   std::vector<Report> steps_to(std::int64_t next, const std::string& why, Time time);
   void judge_name(const icd::RunStatus& status, Time time);
-  void meet_name(const std::string& name, const AnotherRun& another, Time time);
+  void detect_name(const std::string& name, const AnotherRun& another, Time time);
   void claim(const std::string& name, Time time);
   void give_back(const Run& earlier, Time time);
   void begin(const AnotherRun& another, std::int64_t may_be, const std::optional<icd::RunStatus>& status,

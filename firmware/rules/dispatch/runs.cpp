@@ -11,7 +11,7 @@ namespace {
 
 /// The sign of a clock, as a sentence. "": none. `is_alone`: without another sign, the clock must have been
 /// seen to run.
-std::string clock_of_another(const std::optional<Clock>& clock, double shows, double silence, bool is_alone) {
+std::string clock_sign(const std::optional<Clock>& clock, double shows, double silence, bool is_alone) {
   if (!clock || (!clock->runs && is_alone)) return "";
   const double before = clock->shows;
   if (shows < before - kClockJitter) {
@@ -51,7 +51,7 @@ bool are_certainly_different(const Run& before, const Run& now) {
 
 }  // namespace
 
-bool can_be_young(double shows, double ago) {
+bool can_be_new(double shows, double ago) {
   return shows <= ago + kClockJitter;
 }
 
@@ -68,9 +68,9 @@ std::optional<AnotherRun> another_run(const Run& run, const icd::RunStatus& stat
   }
   Signs signs{.count = is_count_up(run, status), .score = is_score_back(run, status)};
   std::string why =
-      clock_of_another(run.status_clock, status.run_clock, silence.at_least, !signs.count && !signs.score);
+      clock_sign(run.status_clock, status.run_clock, silence.at_least, !signs.count && !signs.score);
   signs.clock = !why.empty();
-  if (!signs.agree() && goes_on(run, status, silence)) return std::nullopt;
+  if (!signs.agree() && has_continued(run, status, silence)) return std::nullopt;
   const auto add = [&why](const std::string& more) { why += (why.empty() ? "" : " and ") + more; };
   if (signs.score) add(icd::sentence("the score fell from ", run.last->score, " to ", status.score));
   if (signs.count) {
@@ -88,26 +88,27 @@ std::optional<AnotherRun> another_run(const Run& run, const icd::ReportReply& re
                       {.name = true}};
   }
   if (reply.run_clock <= 0) return std::nullopt;  // no clock
-  const std::string why = clock_of_another(run.answer_clock, reply.run_clock, silence.at_least, true);
+  const std::string why = clock_sign(run.answer_clock, reply.run_clock, silence.at_least, true);
   return why.empty() ? std::nullopt : std::optional(AnotherRun{why, {.clock = true}});
 }
 
-bool goes_on(const Run& run, const icd::RunStatus& status, const Silence& silence) {
+bool has_continued(const Run& run, const icd::RunStatus& status, const Silence& silence) {
   if (!run.status_clock || !silence.since_status || *silence.since_status > kShortSilence) return false;
   const double passed = *silence.since_status;
   const double advanced = status.run_clock - run.status_clock->shows;
   const bool is_on_time =
       advanced > 0 && advanced >= passed / 2 && std::abs(advanced - passed) <= kClockJitter;
-  return is_on_time && !can_be_young(status.run_clock, passed);
+  return is_on_time && !can_be_new(status.run_clock, passed);
 }
 
 bool is_grant(const Run& run, const icd::RunStatus& status, const Silence& silence) {
-  return run.last && is_count_up(run, status) && !is_score_back(run, status) && goes_on(run, status, silence);
+  return run.last && is_count_up(run, status) && !is_score_back(run, status) &&
+         has_continued(run, status, silence);
 }
 
 NameCheck check_name(const Run& before, const icd::RunStatus& status, const Silence& silence) {
   const bool is_young =
-      can_be_young(status.run_clock, silence.since_status.value_or(silence.at_least + kClockAhead));
+      can_be_new(status.run_clock, silence.since_status.value_or(silence.at_least + kClockAhead));
   if (const auto another = another_run(before, status, silence)) {
     return another->signs.is_clock_alone() && !is_young ? NameCheck::Unknown : NameCheck::Confirmed;
   }
@@ -120,7 +121,7 @@ NameCheck check_name(const Run& before, const icd::RunStatus& status, const Sile
   return falls ? NameCheck::Contradicted : NameCheck::Unknown;
 }
 
-bool tells_of_another(const Run& run) {
+bool can_show_other_run(const Run& run) {
   return run.status_clock && run.status_clock->runs;
 }
 
@@ -180,7 +181,7 @@ bool Runs::is_at(std::int64_t number, const std::string& post) const {
   return run == nullptr || run->post.empty() || run->post == post;
 }
 
-std::vector<std::int64_t> Runs::maybe(std::int64_t number) const {
+std::vector<std::int64_t> Runs::possible_runs(std::int64_t number) const {
   std::vector<std::int64_t> numbers;
   // The last condition ends a damaged chain.
   for (const Run* run = find(number); run != nullptr;) {
@@ -191,15 +192,15 @@ std::vector<std::int64_t> Runs::maybe(std::int64_t number) const {
 }
 
 const std::string& Runs::name_trouble() const {
-  for (const std::int64_t number : maybe_present()) {
+  for (const std::int64_t number : possible_runs()) {
     const Run& run = runs_.at(number);
     if (!run.name_trouble.empty()) return run.name_trouble;
   }
   return present().name_trouble;
 }
 
-bool Runs::may_be(std::int64_t number, std::int64_t other) const {
-  const auto numbers = maybe(number);
+bool Runs::can_be(std::int64_t number, std::int64_t other) const {
+  const auto numbers = possible_runs(number);
   return std::ranges::find(numbers, other) != numbers.end();
 }
 

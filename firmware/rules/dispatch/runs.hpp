@@ -90,7 +90,7 @@ struct Silence {
 
 /// Whether a status, after that silence, shows another run than `run`: another team, more remaining reports,
 /// a lower score, or a clock that ran and then went back or fell behind in a long silence. nullopt: it may be
-/// of `run`. More reports or a lower score alone are no sign while the clock goes on (goes_on()).
+/// of `run`. More reports or a lower score alone are no sign while the clock goes on (has_continued()).
 std::optional<AnotherRun> another_run(const Run& run, const icd::RunStatus& status, const Silence& silence);
 
 /// The same by an answer's `run` (ICD 5.2), or if that is missing, by its clock.
@@ -98,14 +98,14 @@ std::optional<AnotherRun> another_run(const Run& run, const icd::ReportReply& re
 
 /// True if the clock of the statuses advanced as time passed, to a value that no run can show that began
 /// since the last status.
-bool goes_on(const Run& run, const icd::RunStatus& status, const Silence& silence);
+bool has_continued(const Run& run, const icd::RunStatus& status, const Silence& silence);
 
 /// True if the status shows more reports left in a run that certainly goes on: somebody granted them.
 bool is_grant(const Run& run, const icd::RunStatus& status, const Silence& silence);
 
 /// A run that began up to `ago` seconds ago may show this clock. A clock that goes back to a later value was
 /// set by a referee.
-bool can_be_young(double shows, double ago);
+bool can_be_new(double shows, double ago);
 
 /// What the first status after another name shows of that name. `before`: the earlier run, with a last
 /// status.
@@ -117,7 +117,7 @@ enum class NameCheck : std::uint8_t {
 NameCheck check_name(const Run& before, const icd::RunStatus& status, const Silence& silence);
 
 /// True if the clock of the statuses was seen to run, so that it would show another run.
-bool tells_of_another(const Run& run);
+bool can_show_other_run(const Run& run);
 
 /// The Command Post's map after a change of run.
 enum class NextMap {
@@ -159,19 +159,19 @@ class Runs {
   bool is_at(std::int64_t number, const std::string& post) const;
   bool is_here(std::int64_t number) const { return is_at(number, present().post); }
   /// The present run, the run that it may still be, the run that that one may be, and so on.
-  std::vector<std::int64_t> maybe_present() const { return maybe(present_); }
+  std::vector<std::int64_t> possible_runs() const { return possible_runs(present_); }
   /// True if run `number` is `other`, or may still be.
-  bool may_be(std::int64_t number, std::int64_t other) const;
+  bool can_be(std::int64_t number, std::int64_t other) const;
   /// Run::name_trouble of the present run, or of one that it may still be. "": names count.
   const std::string& name_trouble() const;
-  /// True if `number` is one of maybe_present(), but not the present run.
-  bool may_be_present(std::int64_t number) const { return number != present_ && may_be(present_, number); }
-  /// The present run is not `number`, which may_be_present(). Returns the run in which another run began.
+  /// True if `number` is one of possible_runs(), but not the present run.
+  bool can_be_present(std::int64_t number) const { return number != present_ && can_be(present_, number); }
+  /// The present run is not `number`, which can_be_present(). Returns the run in which another run began.
   const Run& exclude(std::int64_t number);
 
  private:
-  /// maybe_present() for run `number`.
-  std::vector<std::int64_t> maybe(std::int64_t number) const;
+  /// possible_runs() for run `number`.
+  std::vector<std::int64_t> possible_runs(std::int64_t number) const;
   std::int64_t next_turn() const;
 
   std::map<std::int64_t, Run> runs_{{1, Run{}}};

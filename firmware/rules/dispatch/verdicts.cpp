@@ -26,7 +26,7 @@ bool is_plausible_answer(int status, Body body) {
   return body != Body::Other || status == 404 || status == icd::kTooManyRequests || status >= 500;
 }
 
-bool is_the_command_post(int status, Body body) {
+bool is_from_command_post(int status, Body body) {
   return icd::is_success(status) && body == Body::Json;
 }
 
@@ -41,7 +41,7 @@ MappingVerdict mapping_verdict(int status, Body body) {
   return MappingVerdict::Failing;
 }
 
-bool may_concern_a_part(int status) {
+bool can_concern_part(int status) {
   return status >= 300 && status != icd::kTooManyRequests;
 }
 

@@ -18,7 +18,7 @@ Body body_of(std::string_view body);
 /// Redirects and other pages come from other machines, such as a captive portal.
 bool is_plausible_answer(int status, Body body);
 /// 2xx with JSON. An error does not identify the Command Post, because proxies send JSON errors.
-bool is_the_command_post(int status, Body body);
+bool is_from_command_post(int status, Body body);
 
 /// 413 to a map, a state or markers.
 inline constexpr int kTooLarge = static_cast<int>(icd::Status::ContentTooLarge);
@@ -33,7 +33,7 @@ enum class MappingVerdict : std::uint8_t {
 };
 MappingVerdict mapping_verdict(int status, Body body);
 /// Whether only a part of the message may have failed, such as one robot's pose: any answer but 2xx and 429.
-bool may_concern_a_part(int status);
+bool can_concern_part(int status);
 
 /// The answer's text for people: a JSON string, an object's `detail`, or else the status. Cut at 300 bytes.
 std::string answer_text(int status, std::string_view body);

@@ -8,15 +8,15 @@
 namespace adit::network {
 
 void Change::on_interrupted() {
-  status_.ended = Ended::Reverted;
+  status_.ended = ChangeOutcome::Reverted;
   status_.why = "the change was not confirmed before adit-network ended";
 }
 
-void Change::want(const Wanted& wanted, Instant now) {
+void Change::request_change(const ChangeRequest& wanted, Instant now) {
   if (status_.pending) return;  // the sender sees in the status that its request was ignored
   if (status_.kept == wanted.numbers) {
     status_.ended_nonce = wanted.nonce;
-    status_.ended = Ended::Confirmed;
+    status_.ended = ChangeOutcome::Confirmed;
     status_.why = "the box already has these addresses";
     return;
   }
@@ -26,15 +26,15 @@ void Change::want(const Wanted& wanted, Instant now) {
   }
 }
 
-void Change::hear(const Decision& word, Instant now) {
+void Change::decide(const Decision& word, Instant now) {
   if (!status_.pending || word.nonce != status_.pending->nonce || try_at_) return;
-  if (word.what == Decision::What::Revert) return revert("a user reverted the change", now);
+  if (word.what == Decision::Command::Revert) return revert("a user reverted the change", now);
   const Numbers numbers = status_.pending->wanted;
   if (const auto kept = hands_.keep(numbers); !kept) {
     return revert("the change was confirmed, but could not be stored: " + kept.error(), now);
   }
   status_.kept = numbers;
-  end(Ended::Confirmed, "");
+  end(ChangeOutcome::Confirmed, "");
 }
 
 std::expected<void, std::string> Change::forget(Instant now) {
@@ -45,7 +45,7 @@ std::expected<void, std::string> Change::forget(Instant now) {
   }
   status_.kept = *kept;
   status_.endpoints = {};
-  if (status_.pending) end(Ended::Reverted, "a factory reset forgot all addresses");
+  if (status_.pending) end(ChangeOutcome::Reverted, "a factory reset forgot all addresses");
   return {};
 }
 
@@ -78,15 +78,15 @@ void Change::revert(std::string why, Instant now) {
 
 void Change::try_to_revert(Instant now) {
   const auto reverted = hands_.revert();
-  if (reverted) return end(Ended::Reverted, why_);
+  if (reverted) return end(ChangeOutcome::Reverted, why_);
   if (++tries_ == kTries) {
-    return end(Ended::Reverted,
+    return end(ChangeOutcome::Reverted,
                why_ + "; the old addresses are not in effect yet: retrying: " + reverted.error());
   }
   try_at_ = now + kTryAgain;
 }
 
-void Change::end(Ended how, std::string why) {
+void Change::end(ChangeOutcome how, std::string why) {
   status_.ended_nonce = status_.pending->nonce;
   status_.pending.reset();
   status_.ended = how;

@@ -46,10 +46,10 @@ class Change {
   /// Records that the previous process ended during a change. The caller has reverted that change.
   void on_interrupted();
 
-  void want(const Wanted& wanted, Instant now);
+  void request_change(const ChangeRequest& wanted, Instant now);
   /// Confirms or reverts the pending change. Call before tick(): a late caller may hold a word that came in
   /// time.
-  void hear(const Decision& word, Instant now);
+  void decide(const Decision& word, Instant now);
   /// Forgets all addresses and ends a pending change. Error: not done, or not in effect yet.
   std::expected<void, std::string> forget(Instant now);
   void tick(Instant now);
@@ -64,7 +64,7 @@ class Change {
  private:
   void revert(std::string why, Instant now);
   void try_to_revert(Instant now);
-  void end(Ended how, std::string why);
+  void end(ChangeOutcome how, std::string why);
 
   NumbersSetter& hands_;
   Status status_;

@@ -56,8 +56,8 @@ void warn_of_lost_endpoints(const Numbers& wanted, const Circumstances& around,
   }
 }
 
-void warn_the_asker(const Numbers& wanted, const std::optional<Numbers>& present, const Circumstances& around,
-                    std::vector<std::string>& warnings) {
+void warn_operator(const Numbers& wanted, const std::optional<Numbers>& present, const Circumstances& around,
+                   std::vector<std::string>& warnings) {
   const auto asker = settings::ipv4_of(around.asker);
   if (present && present->mode == wanted.mode && present->team == wanted.team) return;
   const std::string within =
@@ -163,7 +163,7 @@ Findings check(const Numbers& wanted, const std::optional<Numbers>& present, con
   check_team_is_private(wanted, findings.errors);
   check_listening(wanted, around, findings.errors);
   warn_of_lost_endpoints(wanted, around, findings.warnings);
-  warn_the_asker(wanted, present, around, findings.warnings);
+  warn_operator(wanted, present, around, findings.warnings);
   return findings;
 }
 

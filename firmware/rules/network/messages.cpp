@@ -27,8 +27,8 @@ struct KindOf<network::Instant> {
 
 namespace adit::network {
 
-static constexpr std::string_view kWordWords[] = {"confirm", "revert"};  // in the order of Decision::What
-static constexpr auto& words_of(Decision::What /*of*/) {
+static constexpr std::string_view kWordWords[] = {"confirm", "revert"};  // in the order of Decision::Command
+static constexpr auto& words_of(Decision::Command /*of*/) {
   return kWordWords;
 }
 
@@ -104,9 +104,9 @@ constexpr Member confirm_within() {
 }
 
 constexpr Member kWantedMembers[] = {
-    member<&Wanted::nonce>("nonce").matching(codec::kNonce),
-    confirm_within<&Wanted::confirm_within>(),
-    member<&Wanted::numbers>("numbers"),
+    member<&ChangeRequest::nonce>("nonce").matching(codec::kNonce),
+    confirm_within<&ChangeRequest::confirm_within>(),
+    member<&ChangeRequest::numbers>("numbers"),
 };
 constexpr Member kWordMembers[] = {
     member<&Decision::nonce>("nonce").matching(codec::kNonce),
@@ -117,7 +117,7 @@ constexpr Member kProbeMembers[] = {
     member<&Probe::sought>("sought").matching(kAddressOrNone),
 };
 constexpr Member kEndpointsMembers[] = {member<&Endpoints::addresses>("endpoints").as(kAddresses)};
-constexpr Member kForgetMembers[] = {member<&Forget::nonce>("nonce").matching(codec::kNonce)};
+constexpr Member kForgetMembers[] = {member<&FactoryRequest::nonce>("nonce").matching(codec::kNonce)};
 constexpr Member kPortsMembers[] = {member<&TeamPorts::ports>("ports").as(kPorts)};
 constexpr Member kPendingMembers[] = {
     member<&Pending::nonce>("nonce").matching(codec::kNonce),
@@ -137,13 +137,13 @@ constexpr Member kStatusMembers[] = {
     member<&Status::trouble>("trouble"),
 };
 constexpr Member kProbedMembers[] = {
-    member<&Probed::nonce>("nonce").matching(codec::kNonce),
-    member<&Probed::address>("address"),
-    member<&Probed::claimant>("claimant"),
-    member<&Probed::own>("own"),
-    member<&Probed::found_on>("found_on"),
-    member<&Probed::trouble>("trouble"),
-    member<&Probed::not_sought>("not_sought"),
+    member<&ProbeResult::nonce>("nonce").matching(codec::kNonce),
+    member<&ProbeResult::address>("address"),
+    member<&ProbeResult::claimant>("claimant"),
+    member<&ProbeResult::own>("own"),
+    member<&ProbeResult::found_on>("found_on"),
+    member<&ProbeResult::trouble>("trouble"),
+    member<&ProbeResult::not_sought>("not_sought"),
 };
 
 constexpr Member kTakenAddressMembers[] = {
@@ -158,27 +158,27 @@ constexpr Member kTakenMembers[] = {
 };
 
 /// The file of the stored numbers.
-struct Kept {
+struct NumbersFile {
   Numbers numbers;
   static const Row kRow;
 };
-constexpr Member kKeptMembers[] = {member<&Kept::numbers>("numbers")};
-constexpr Row Kept::kRow = codec::complete<Kept>({"", kKeptMembers});
+constexpr Member kKeptMembers[] = {member<&NumbersFile::numbers>("numbers")};
+constexpr Row NumbersFile::kRow = codec::complete<NumbersFile>({"", kKeptMembers});
 
 }  // namespace
 
 constexpr codec::Form kAddressOrNone{
     [](std::string_view text) { return text.empty() || kAddress.fits(text); }, "an IPv4 address, or none"};
 
-constexpr Row Wanted::kRow = codec::complete<Wanted>({"", kWantedMembers});
+constexpr Row ChangeRequest::kRow = codec::complete<ChangeRequest>({"", kWantedMembers});
 constexpr Row Decision::kRow = codec::complete<Decision>({"", kWordMembers});
 constexpr Row Probe::kRow = codec::complete<Probe>({"", kProbeMembers});
 constexpr Row Endpoints::kRow = codec::complete<Endpoints>({"", kEndpointsMembers});
 constexpr Row TeamPorts::kRow = codec::complete<TeamPorts>({"", kPortsMembers});
-constexpr Row Forget::kRow = codec::complete<Forget>({"", kForgetMembers});
+constexpr Row FactoryRequest::kRow = codec::complete<FactoryRequest>({"", kForgetMembers});
 constexpr Row Pending::kRow = codec::complete<Pending>({"", kPendingMembers});
 constexpr Row Status::kRow = codec::complete<Status>({"", kStatusMembers});
-constexpr Row Probed::kRow = codec::complete<Probed>({"", kProbedMembers});
+constexpr Row ProbeResult::kRow = codec::complete<ProbeResult>({"", kProbedMembers});
 constexpr Row AddressConflict::kRow = codec::complete<AddressConflict>({"", kTakenAddressMembers});
 constexpr Row AddressConflicts::kRow = codec::complete<AddressConflicts>({"", kTakenMembers});
 
@@ -191,11 +191,11 @@ std::string rules_for(const TeamPorts& ports) {
 }
 
 std::string write_kept(const Numbers& numbers) {
-  return codec::write_file(Kept{numbers});
+  return codec::write_file(NumbersFile{numbers});
 }
 
 std::expected<Numbers, std::string> read_kept(std::string_view json) {
-  auto kept = ADIT_TRY(codec::read_file<Kept>(json));
+  auto kept = ADIT_TRY(codec::read_file<NumbersFile>(json));
   return std::move(kept.numbers);
 }
 

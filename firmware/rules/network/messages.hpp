@@ -35,7 +35,7 @@ inline constexpr std::chrono::milliseconds kLeastWithin{1000}, kMostWithin{60000
 /// An IPv4 address or "".
 extern const codec::Form kAddressOrNone;
 
-struct Wanted {
+struct ChangeRequest {
   std::string nonce;
   std::chrono::milliseconds confirm_within{90000};  // kLeastWithin to kMostWithin
   Numbers numbers;
@@ -44,9 +44,9 @@ struct Wanted {
 
 /// The operator's answer to a pending change.
 struct Decision {
-  enum class What : std::uint8_t { Confirm, Revert };
+  enum class Command : std::uint8_t { Confirm, Revert };
   std::string nonce;  // of the change
-  What what = What::Revert;
+  Command what = Command::Revert;
   static const codec::Row kRow;
 };
 
@@ -67,7 +67,7 @@ struct Endpoints {
 inline constexpr std::size_t kMostEndpoints = 64;
 
 /// Requests the factory addresses.
-struct Forget {
+struct FactoryRequest {
   std::string nonce;
   static const codec::Row kRow;
 };
@@ -97,12 +97,12 @@ struct Pending {
   friend bool operator==(const Pending&, const Pending&) = default;
 };
 
-enum class Ended : std::uint8_t { NotYet, Confirmed, Reverted };
+enum class ChangeOutcome : std::uint8_t { NotYet, Confirmed, Reverted };
 inline constexpr std::string_view kEndedWords[] = {"", "confirmed", "reverted"};  // in the order of Ended
-constexpr auto& words_of(Ended /*of*/) {
+constexpr auto& words_of(ChangeOutcome /*of*/) {
   return kEndedWords;
 }
-constexpr std::string_view name_of(Ended ended) {
+constexpr std::string_view name_of(ChangeOutcome ended) {
   return kEndedWords[static_cast<std::size_t>(ended)];
 }
 
@@ -111,10 +111,10 @@ struct Status {
   std::optional<Numbers> kept = {};  // confirmed, or from the factory; nullopt: set elsewhere
   Endpoints endpoints = {};          // addresses that have routes
   std::optional<Pending> pending = {};
-  Ended ended = Ended::NotYet;   // of the last change since this process started
-  std::string ended_nonce = "";  // nonce of that change
-  std::string why = "";          // reason of that end
-  std::string trouble = "";      // why adit-network cannot work, or ""
+  ChangeOutcome ended = ChangeOutcome::NotYet;  // of the last change since this process started
+  std::string ended_nonce = "";                 // nonce of that change
+  std::string why = "";                         // reason of that end
+  std::string trouble = "";                     // why adit-network cannot work, or ""
   bool names(std::string_view change) const {
     return ended_nonce == change || (pending && pending->nonce == change);
   }
@@ -122,7 +122,7 @@ struct Status {
   friend bool operator==(const Status&, const Status&) = default;
 };
 
-struct Probed {
+struct ProbeResult {
   std::string nonce;
   std::string address = "";     // first address with a conflict, else the box's first address; "": no address
   std::string claimant = "";    // MAC address of the other machine; "": no conflict

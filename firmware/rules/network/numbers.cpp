@@ -123,7 +123,7 @@ class Members {
 constexpr std::uint32_t kLinkLocal = 169u << 8 | 254;  // the first two numbers of 169.254.0.0/16
 
 /// Why a host of the subnet cannot have the address, or "".
-std::string unfit(std::uint32_t address, const Subnet& subnet) {
+std::string address_error(std::uint32_t address, const Subnet& subnet) {
   const std::uint32_t first = address >> 24;
   if (first == 0 || first == 127 || first >= 224) return "is not an address that a host can have";
   if (address >> 16 == kLinkLocal) return "is link-local: a host chooses such an address itself (RFC 3927)";
@@ -137,7 +137,7 @@ std::optional<Subnet> host(Members& members) {
   const auto prefix = members.prefix("prefix");
   if (!address || !prefix) return std::nullopt;
   const Subnet subnet{*address, *prefix};
-  if (const std::string why = unfit(*address, subnet); !why.empty()) {
+  if (const std::string why = address_error(*address, subnet); !why.empty()) {
     members.refuse("address", icd::sentence(settings::ipv4_text(*address), " ", why));
   }
   return subnet;
@@ -205,7 +205,7 @@ void check_gateway(Members& post, const Numbers& numbers) {
   } else if (std::ranges::find(numbers.command_post, *numbers.gateway, &Subnet::address) !=
              numbers.command_post.end()) {
     post.refuse("gateway", icd::sentence(text, " is the box's own address"));
-  } else if (const std::string why = unfit(*numbers.gateway, *subnet); !why.empty()) {
+  } else if (const std::string why = address_error(*numbers.gateway, *subnet); !why.empty()) {
     post.refuse("gateway", icd::sentence(text, " ", why));
   }
 }

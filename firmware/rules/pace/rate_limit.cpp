@@ -85,7 +85,7 @@ void RateLimit::on_departed(const Span& sent) {
 }
 
 /// Counts the end of one request in flight. True if it was sent before the present storm.
-bool RateLimit::end_one() {
+bool RateLimit::end_request() {
   under_way_ = std::max(under_way_ - 1, 0);
   if (!storm_ || storm_->sent_before == 0) return false;
   --storm_->sent_before;
@@ -93,7 +93,7 @@ bool RateLimit::end_one() {
 }
 
 void RateLimit::on_answered(const Span& sent, Instant now) {
-  const bool sent_before = end_one();
+  const bool sent_before = end_request();
   if (storm_ && !sent_before) {
     if (storm_->counts_anew && storm_->is_one) ++single_;
     if (last_storm_) storm_->on_average = (now - last_storm_->ended) / (taken_since_ + 1);
@@ -110,12 +110,12 @@ void RateLimit::on_answered(const Span& sent, Instant now) {
 }
 
 void RateLimit::on_lost(Instant now) {
-  end_one();
+  end_request();
   count({.first = now, .last = now});
 }
 
 void RateLimit::on_throttled(Instant now, std::optional<std::chrono::seconds> retry_after) {
-  const bool sent_before = end_one();
+  const bool sent_before = end_request();
   if (!storm_) {
     begin_storm(now);
   } else if (!sent_before) {
@@ -190,7 +190,7 @@ void RateLimit::speed_up(Instant now) {
   learned_at_ = now;
 }
 
-Learned RateLimit::learned_rate() const {
+LearnedRate RateLimit::learned_rate() const {
   return {.earliest = earliest(),
           .spacing = rule_.spacing > allowed_ ? rule_.spacing : Duration{0},
           .under_way = under_way_ > 0,
@@ -198,7 +198,7 @@ Learned RateLimit::learned_rate() const {
           .single = single_ + (storm_ && storm_->counts_anew && storm_->is_one ? 1 : 0)};
 }
 
-void RateLimit::carry_on(const Learned& learned, Instant now) {
+void RateLimit::restore(const LearnedRate& learned, Instant now) {
   rule_.from_answers = learned.from_answers;
   single_ = learned.single;
   if (learned.spacing > allowed_) rule_.spacing = learned.spacing;

@@ -32,13 +32,13 @@ struct Span {
 };
 
 /// The state of a RateLimit that survives a process restart.
-struct Learned {
+struct LearnedRate {
   Span earliest{};            // times of the next request
   Duration spacing{};         // as learned; 0: as the settings allow
   bool under_way = false;     // a request is in flight, and its outcome is not known here
   bool from_answers = false;  // spacing counts from the server's answer
   int single = 0;             // how often a single 429 caused that
-  friend bool operator==(const Learned&, const Learned&) = default;
+  friend bool operator==(const LearnedRate&, const LearnedRate&) = default;
 };
 
 /// Limits requests to one URI to `hertz` per second, evenly spaced. A server may count a request when it
@@ -76,9 +76,9 @@ class RateLimit {
 
   /// True if the next request may be sent before the last one is answered. False in a storm and while a
   /// learned rate applies.
-  bool may_go_ahead() const { return !storm_ && !rule_.from_answers && rule_.spacing == allowed_; }
+  bool can_pipeline() const { return !storm_ && !rule_.from_answers && rule_.spacing == allowed_; }
 
-  /// `ahead`: the previous request is still in flight. One call of on_answered(), not_sent(), on_lost() or
+  /// `ahead`: the previous request is still in flight. One call of on_answered(), on_not_sent(), on_lost() or
   /// on_throttled() must follow for each request.
   void on_sent(Instant now, bool ahead = false);
   /// The last request has left as `sent` says and is still in flight.
@@ -86,7 +86,7 @@ class RateLimit {
   /// The server accepted or rejected (not with 429) a request at `now`. `sent`: when its bytes left.
   void on_answered(const Span& sent, Instant now);
   /// No byte of the request left.
-  void not_sent() { end_one(); }
+  void on_not_sent() { end_request(); }
   /// The request failed in doubt. Spacing counts from now, because the connection may have been slow and the
   /// server may have received the request just now.
   void on_lost(Instant now);
@@ -105,10 +105,10 @@ class RateLimit {
   /// that the server asked for stay.
   void allow(double hertz, Instant now);
 
-  Learned learned_rate() const;
+  LearnedRate learned_rate() const;
   /// Restores the previous process's state; this one starts at `now`. A request in flight may have just
   /// ended.
-  void carry_on(const Learned& learned, Instant now);
+  void restore(const LearnedRate& learned, Instant now);
 
  private:
   /// A series of 429s.
@@ -129,7 +129,7 @@ class RateLimit {
     bool from_answers = false;
   };
 
-  bool end_one();
+  bool end_request();
   void count(const Span& sent);
   void begin_storm(Instant now);
   bool is_a_limit() const;

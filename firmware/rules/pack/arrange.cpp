@@ -151,9 +151,10 @@ void put_block_in_order(const icd::PointCloud2& cloud, const Box& box, std::span
 
 }  // namespace
 
-Arranged arrange_contiguous(const PointLayout& layout, const icd::MapData& data, std::size_t point_step) {
+ContiguousCloud arrange_contiguous(const PointLayout& layout, const icd::MapData& data,
+                                   std::size_t point_step) {
   const std::size_t step = layout.cloud.point_step;
-  Arranged arranged{.cloud = layout.cloud, .points = Bytes(data.bytes.size() / point_step * step)};
+  ContiguousCloud arranged{.cloud = layout.cloud, .points = Bytes(data.bytes.size() / point_step * step)};
   std::span<std::uint8_t> rest{arranged.points};
   for_each_point(data.bytes, point_step, [&](std::span<const std::uint8_t> point) {
     layout.copy(point, rest);
@@ -163,7 +164,7 @@ Arranged arrange_contiguous(const PointLayout& layout, const icd::MapData& data,
   return arranged;
 }
 
-Box box_of(const Arranged& arranged) {
+Box box_of(const ContiguousCloud& arranged) {
   const CoordinateReader coordinates{arranged.cloud};
   const std::size_t step = arranged.cloud.point_step;
   Box box;
@@ -173,7 +174,7 @@ Box box_of(const Arranged& arranged) {
 }
 
 /// Works in blocks of equal size.
-void put_in_order(Arranged& arranged) {
+void put_in_order(ContiguousCloud& arranged) {
   const std::size_t step = arranged.cloud.point_step, points = arranged.points.size() / step;
   const std::size_t blocks = (points + kMostOrdered - 1) / kMostOrdered;
   if (blocks == 0) return;
@@ -197,7 +198,7 @@ bool is_coordinate(const icd::FieldSchema& field) {
   return field.name == "x" || field.name == "y" || field.name == "z";
 }
 
-bool may_be_turned(const icd::PointCloud2& cloud) {
+bool can_rotate(const icd::PointCloud2& cloud) {
   return std::ranges::all_of(cloud.fields, [](const icd::FieldSchema& field) {
     return is_coordinate(field) || std::ranges::find(kUnturned, field.name) != std::end(kUnturned);
   });
@@ -235,7 +236,7 @@ bool shift(double binade, double unit, double low, double high, double& placed, 
 
 std::optional<Shift> shift_of(const icd::PointCloud2& cloud, const Box& box, double unit) {
   const icd::Pose origin = cloud.origin.value_or(icd::Pose{});
-  if (origin.orientation.is_turned() && !may_be_turned(cloud)) return std::nullopt;
+  if (origin.orientation.is_turned() && !can_rotate(cloud)) return std::nullopt;
   Shift found{.placed = icd::Placement{origin}, .origin = {}};
   const Box all = placed_box(box, found.placed);
   const double binade = 0x1p23 * unit;
@@ -254,7 +255,7 @@ icd::PointCloud2 to_float32(icd::PointCloud2 cloud) {
 }
 
 /// Works in place, because the new points are not larger.
-void shift_points(Arranged& arranged, const PointLayout& layout, const icd::Placement& placed) {
+void shift_points(ContiguousCloud& arranged, const PointLayout& layout, const icd::Placement& placed) {
   const CoordinateReader coordinates{arranged.cloud};
   const auto axes = icd::axes_of(layout.cloud);
   const std::size_t step = arranged.cloud.point_step, new_step = layout.cloud.point_step;
@@ -277,7 +278,7 @@ void shift_points(Arranged& arranged, const PointLayout& layout, const icd::Plac
 
 }  // namespace
 
-bool round_to(double unit, Arranged& arranged) {
+bool round_to(double unit, ContiguousCloud& arranged) {
   if (arranged.cloud.is_bigendian || arranged.points.empty()) return false;
   const auto layout = strip_padding(to_float32(arranged.cloud));
   const auto shift = shift_of(arranged.cloud, box_of(arranged), unit);

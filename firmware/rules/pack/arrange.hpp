@@ -32,21 +32,22 @@ std::vector<std::uint32_t> numbers_in(Layers layers, const icd::PointCloud2& clo
 inline constexpr int kPointsLevel = 5;
 
 /// A cloud whose points are uncompressed and in one piece.
-struct Arranged {
+struct ContiguousCloud {
   icd::PointCloud2 cloud;
   std::vector<std::uint8_t> points;
 };
 
 /// Copies the uncompressed points of `data`, each of `point_step` bytes, into `layout`, in their order.
-Arranged arrange_contiguous(const PointLayout& layout, const icd::MapData& data, std::size_t point_step);
+ContiguousCloud arrange_contiguous(const PointLayout& layout, const icd::MapData& data,
+                                   std::size_t point_step);
 
 /// The box of all its points.
-Box box_of(const Arranged& arranged);
+Box box_of(const ContiguousCloud& arranged);
 
 /// Puts the points in the order in which gzip makes them smallest: in layers along one of the axes, or as
 /// they are. Each order is tried on a sample, and at most kMostOrdered points are ordered at a time. Nothing
 /// is lost, because a cloud is a set of points (ICD 6.3.2: "clouds will always be unstructured").
-void put_in_order(Arranged& arranged);
+void put_in_order(ContiguousCloud& arranged);
 
 /// Rounds x, y and z to whole steps of `unit` metres, a power of two, so that gzip makes them small. Each
 /// coordinate is shifted into the binade of float32 whose steps these are (from 2^23 steps up), because all
@@ -63,6 +64,6 @@ void put_in_order(Arranged& arranged);
 /// - two fields share bytes, or there are no points
 ///
 /// All points are finite (remove_invalid_points()).
-bool round_to(double unit, Arranged& arranged);
+bool round_to(double unit, ContiguousCloud& arranged);
 
 }  // namespace adit::pack

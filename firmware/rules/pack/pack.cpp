@@ -56,7 +56,7 @@ bool is_left(const icd::MapData& cells) {
   return cells.raw_size > kMany && cells.bytes.size() <= cells.raw_size / kPerByte;
 }
 
-Effort effort_for_grid(const icd::MapUpdate& grid, const Hurry& hurry) {
+Effort effort_for_grid(const icd::MapUpdate& grid, const EffortInput& hurry) {
   if (is_left(grid.data)) return Effort::None;
   const double as_stored = static_cast<double>(grid.data.bytes.size()) / hurry.bytes_per_second;
   const double most = std::min({hurry.longest / 2, 0.5, as_stored});
@@ -68,7 +68,7 @@ Effort effort_for_grid(const icd::MapUpdate& grid, const Hurry& hurry) {
 
 }  // namespace
 
-Effort effort_for(std::size_t size, double quick_to, const Hurry& hurry) {
+Effort effort_for(std::size_t size, double quick_to, const EffortInput& hurry) {
   const double bytes = static_cast<double>(size);
   struct Cost {
     double delay, takes;  // seconds, of all maps and of this one
@@ -92,7 +92,7 @@ Effort effort_for(std::size_t size, double quick_to, const Hurry& hurry) {
 }
 
 /// If even a cloud that Quick shrinks to nothing is best sent uncompressed, no sample is tried.
-Choice effort_for(const icd::MapUpdate& map, const Hurry& hurry) {
+Choice effort_for(const icd::MapUpdate& map, const EffortInput& hurry) {
   if (map.data.raw_size > kMostPacked) return {Effort::None};
   if (map.is_grid()) return {effort_for_grid(map, hurry)};
   const std::size_t size = map.data.bytes.size();
@@ -121,7 +121,7 @@ void pack_points(icd::PointCloud2& cloud, icd::MapData& data, const CloudForm& f
   const bool is_full = form.effort == Effort::Full;
   const auto tight = form.is_arranged ? strip_padding(cloud) : std::nullopt;
   const PointLayout layout = tight ? *tight : plain_layout(cloud);
-  Arranged arranged = arrange_contiguous(layout, data, cloud.point_step);
+  ContiguousCloud arranged = arrange_contiguous(layout, data, cloud.point_step);
   if (tight && is_full && form.unit > 0) round_to(form.unit, arranged);
   if (tight && is_full) put_in_order(arranged);
   const int level = is_full ? kPointsLevel : codec::kFastestLevel;
@@ -187,7 +187,7 @@ icd::MapData remove_invalid_points(const icd::PointCloud2& cloud, icd::MapData d
   bool all_are = true;
   for_each_point(data.bytes, cloud.point_step, [&](auto point) { return all_are = is_finite(point); });
   if (all_are) return data;
-  return those_that_stay(data, cloud.point_step, is_finite);
+  return filter_points(data, cloud.point_step, is_finite);
 }
 
 bool has_only_invalid_points(const icd::MapUpdate& map) {

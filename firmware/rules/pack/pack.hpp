@@ -16,7 +16,7 @@ enum class Effort : std::uint8_t {
 };
 
 /// The conditions that decide the effort for a map.
-struct Hurry {
+struct EffortInput {
   double bytes_per_second = 1;  // the rate of its link
   double slowness = 1;          // of this box: a factor for seconds_for()
   double longest = 1;           // seconds from one map to the next
@@ -44,7 +44,7 @@ struct Choice {
 /// while the link carries another: the slower of the two, if it takes longer than `longest`, delays all maps,
 /// and the effort with the shortest delay is chosen. Among several, it is the effort with which the cloud is
 /// sent completely first. Another effort than Full must save a tenth of that time.
-Effort effort_for(std::size_t size, double quick_to, const Hurry& hurry);
+Effort effort_for(std::size_t size, double quick_to, const EffortInput& hurry);
 
 /// The same for an exact, uncompressed cloud, or None for more than kMostPacked. Compresses a sample if the
 /// result can matter; otherwise `full_to` is 1.
@@ -52,7 +52,7 @@ Effort effort_for(std::size_t size, double quick_to, const Hurry& hurry);
 /// For a stored grid: the greatest effort that takes at most half of `longest`, half a second, and the time
 /// in which the grid as stored is sent. None for more than kMostPacked. Also None for more than 16 MiB of
 /// cells if the stored form has at most one byte per 40 cells.
-Choice effort_for(const icd::MapUpdate& map, const Hurry& hurry);
+Choice effort_for(const icd::MapUpdate& map, const EffortInput& hurry);
 
 /// Seconds to pack `map` (uncompressed points or stored cells) on the box of tests/bench/README.md: typical
 /// for a cloud, the maximum for a grid.

@@ -87,7 +87,7 @@ void for_each_point(const icd::ChunkedBytes& bytes, std::size_t point_step, Visi
 
 /// The points of uncompressed `data` for which `stays` returns true, unchanged, in their order.
 template <class Stays>
-icd::MapData those_that_stay(const icd::MapData& data, std::size_t point_step, Stays stays) {
+icd::MapData filter_points(const icd::MapData& data, std::size_t point_step, Stays stays) {
   icd::MapData kept;
   for_each_point(data.bytes, point_step, [&](std::span<const std::uint8_t> point) {
     if (stays(point)) kept.bytes.append(point);

@@ -14,9 +14,9 @@ namespace adit::pack {
 namespace {
 
 /// Copies a tile's cells, piece by piece, to their places in rows of `width` cells.
-class Laying {
+class TileCopier {
  public:
-  Laying(std::vector<std::uint8_t>& cells, std::size_t width, const Tile& tile)
+  TileCopier(std::vector<std::uint8_t>& cells, std::size_t width, const Tile& tile)
       : cells_(cells), width_(width), tile_(tile) {}
 
   void feed(std::span<const std::uint8_t> piece) {
@@ -47,7 +47,7 @@ icd::Checked<icd::MapData> stitch(std::size_t width, std::size_t height, std::sp
   const auto cells = std::make_shared<std::vector<std::uint8_t>>(std::move(under));
   for (const Tile& tile : tiles) {
     icd::require(tile.column + tile.width <= width && tile.row + tile.height <= height);
-    Laying laying{*cells, width, tile};
+    TileCopier laying{*cells, width, tile};
     const auto laid =
         codec::for_each_piece(tile.data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
           laying.feed(piece);

@@ -18,7 +18,7 @@ class Union {
  public:
   void clear() { all_.fill(0); }
   /// Returns the tile's own number of known pixels.
-  std::uint32_t add(const Packed& tile) {
+  std::uint32_t add(const PackedTile& tile) {
     packer_.unpack(tile, pixels_);
     for (std::size_t i = 0; i < all_.size(); ++i) all_[i] |= pixels_[i];
     return known_in(pixels_);
@@ -59,8 +59,8 @@ void CoveredArea::update(const Changes& changes, const Between& between) {
   is_whole_ = changes.is_whole;
 }
 
-Covered CoveredArea::now() const {
-  Covered covered{.version = version_, .of = {}, .all = 0, .is_whole = is_whole_};
+Coverage CoveredArea::now() const {
+  Coverage covered{.version = version_, .of = {}, .all = 0, .is_whole = is_whole_};
   for (const auto& [at, counts] : places_) {
     covered.all += counts.all;
     for (const auto& [robot, known] : counts.of) covered.of[robot] += known;

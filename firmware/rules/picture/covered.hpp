@@ -12,7 +12,7 @@
 namespace adit::picture {
 
 /// The area that grids show as known, in pixels of the base: squares of kPixel metres.
-struct Covered {
+struct Coverage {
   std::uint64_t version = 0;                // Mosaic::version() of this count
   std::map<std::string, std::uint64_t> of;  // by robot with known cells; "": the merged map
   std::uint64_t all = 0;                    // a pixel that several robots know counts once
@@ -39,7 +39,7 @@ class CoveredArea {
   /// Inflates the changed tiles: 64 KB each, one place at a time. Call it on a worker.
   void update(const Changes& changes, const Between& between = [] {});
   /// The state after the last update(), which must have returned.
-  Covered now() const;
+  Coverage now() const;
 
  private:
   struct Counts {
@@ -51,8 +51,8 @@ class CoveredArea {
   bool is_whole_ = true;
 };
 
-/// Covered::all over time, oldest first, as far back and as fine as the picture keeps earlier states. A pixel
-/// that was known once stays covered. Inflates every state.
+/// Coverage::all over time, oldest first, as far back and as fine as the picture keeps earlier states. A
+/// pixel that was known once stays covered. Inflates every state.
 std::vector<std::pair<double, std::uint64_t>> covered_over_time(const Mosaic& mosaic);
 
 }  // namespace adit::picture

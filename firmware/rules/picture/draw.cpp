@@ -57,8 +57,8 @@ class RowCutter {
 /// are larger than pixels, it shows the cell that contains the pixel's centre.
 class AlignedGrid {
  public:
-  static bool suits(const icd::OccupancyGrid& grid, const icd::Placement& placement);
-  /// Requires suits().
+  static bool can_draw(const icd::OccupancyGrid& grid, const icd::Placement& placement);
+  /// Requires can_draw().
   AlignedGrid(const icd::OccupancyGrid& grid, const icd::Placement& placement, Sheet& sheet);
 
   /// Draws a part of a row. Call it in the order of the data.
@@ -85,7 +85,7 @@ class AlignedGrid {
     int first_pixel = 0;
     std::vector<Cells> cells;  // of first_pixel and those after it; never an empty range
   };
-  void row_ended(std::size_t row);
+  void finish_row(std::size_t row);
   void make_line();
 
   Sheet& sheet_;
@@ -113,7 +113,7 @@ class TurnedGrid {
     double x = 0, y = 0;  // in pixels
   };
   bool is_near(double x, double y) const;
-  void dab(double x, double y, std::uint8_t index);
+  void draw_dot(double x, double y, std::uint8_t index);
 
   Sheet& sheet_;
   Step origin_, column_, row_;  // the grid's corner, and the steps from cell to cell
@@ -161,7 +161,7 @@ AlignedGrid::Axis::Axis(double origin, double metres_per_cell, std::uint32_t cou
   }
 }
 
-bool AlignedGrid::suits(const icd::OccupancyGrid& grid, const icd::Placement& placement) {
+bool AlignedGrid::can_draw(const icd::OccupancyGrid& grid, const icd::Placement& placement) {
   const auto& turn = placement.turn;
   const double along_x = grid.width * grid.resolution, along_y = grid.height * grid.resolution;
   return turn[0][0] > 0.5 && turn[1][1] > 0.5 && std::abs(turn[1][0]) * along_x < kMostSkew &&
@@ -175,7 +175,7 @@ AlignedGrid::AlignedGrid(const icd::OccupancyGrid& grid, const icd::Placement& p
       rows_(placement.shift.y, grid.resolution * placement.turn[1][1], grid.height,
             {sheet.frame().metres_per_pixel(), sheet.frame().first_y(), sheet.frame().side()}),
       width_(grid.width) {
-  icd::require(suits(grid, placement));
+  icd::require(can_draw(grid, placement));
   if (columns_.end() - columns_.begin() > kMostColumns) columns_.cells.clear();
   highest_.resize(columns_.end() - columns_.begin());
   line_.resize(columns_.cells.size());
@@ -193,10 +193,10 @@ void AlignedGrid::draw(std::size_t row, std::size_t column, std::span<const std:
   const std::uint8_t* cell = cells.data() + (from - column);
   std::uint8_t* highest = highest_.data() + (from - columns_.begin());
   for (std::size_t i = 0; i < to - from; ++i) highest[i] = std::max(highest[i], index_of_cell(cell[i]));
-  if (end >= columns_.end()) row_ended(row);
+  if (end >= columns_.end()) finish_row(row);
 }
 
-void AlignedGrid::row_ended(std::size_t row) {
+void AlignedGrid::finish_row(std::size_t row) {
   if (next_ == rows_.cells.size() || rows_.cells[next_].end != row + 1) return;
   make_line();
   for (; next_ < rows_.cells.size() && rows_.cells[next_].end == row + 1; ++next_) {
@@ -238,7 +238,7 @@ bool TurnedGrid::is_near(double x, double y) const {
   return near(x, frame.first_x()) && near(y, frame.first_y());
 }
 
-void TurnedGrid::dab(double x, double y, std::uint8_t index) {
+void TurnedGrid::draw_dot(double x, double y, std::uint8_t index) {
   const Frame& frame = sheet_.frame();
   const auto inside = [&](double at, int from) { return at >= from && at < from + frame.side(); };
   if (!inside(x, frame.first_x()) || !inside(y, frame.first_y())) {
@@ -266,13 +266,14 @@ void TurnedGrid::draw(std::size_t row, std::size_t column, std::span<const std::
     }
     dabs_ += dabs;
     if (side_ == 1) {
-      dab(x, y, index);
+      draw_dot(x, y, index);
       continue;
     }
     for (int v = 0; v < side_; ++v) {
       for (int u = 0; u < side_; ++u) {
         const double along = c + (u + 0.5) / side_, up = r + (v + 0.5) / side_;
-        dab(origin_.x + along * column_.x + up * row_.x, origin_.y + along * column_.y + up * row_.y, index);
+        draw_dot(origin_.x + along * column_.x + up * row_.x, origin_.y + along * column_.y + up * row_.y,
+                 index);
       }
     }
   }
@@ -466,8 +467,8 @@ icd::Checked<std::size_t> draw_by(const icd::OccupancyGrid& grid, const icd::Pla
 icd::Checked<std::size_t> draw_grid(const icd::OccupancyGrid& grid, const icd::MapData& data, Sheet& sheet,
                                     const Between& between) {
   const icd::Placement placement{grid.origin};
-  return AlignedGrid::suits(grid, placement) ? draw_by<AlignedGrid>(grid, placement, data, sheet, between)
-                                             : draw_by<TurnedGrid>(grid, placement, data, sheet, between);
+  return AlignedGrid::can_draw(grid, placement) ? draw_by<AlignedGrid>(grid, placement, data, sheet, between)
+                                                : draw_by<TurnedGrid>(grid, placement, data, sheet, between);
 }
 
 icd::Checked<Drawing> draw(const icd::MapUpdate& map, const Canvas& before, const Between& between) {
@@ -528,12 +529,12 @@ Float coordinate(const std::uint8_t* at) {
 }
 
 /// Draws points as seen from above.
-class Dabber {
+class PointPainter {
  public:
-  Dabber(const icd::PointCloud2& cloud, Sheet& sheet)
+  PointPainter(const icd::PointCloud2& cloud, Sheet& sheet)
       : sheet_(sheet), placement_(cloud.origin.value_or(icd::Pose{})) {}
 
-  void dab(const icd::Point& point) {
+  void draw_point(const icd::Point& point) {
     const auto [x, y, z] = placement_(point);
     const auto inside = [](double at) { return at >= -kWorldMetres && at < kWorldMetres; };  // false for NaN
     if (!inside(x) || !inside(y) || !std::isfinite(z) || !sheet_.raise(pixel(x), pixel(y), height_index(z))) {
@@ -558,16 +559,17 @@ icd::Checked<std::size_t> draw_points(const icd::PointCloud2& cloud, const icd::
   const auto at = icd::axes_of(cloud);
   const std::size_t points = data.raw_size / cloud.point_step;
   PointCutter cutter{cloud.point_step, std::max<std::size_t>(1, (points + kMostPoints - 1) / kMostPoints)};
-  Dabber dabber{cloud, sheet};
+  PointPainter painter{cloud, sheet};
   ADIT_TRY(codec::for_each_piece(data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
     cutter.feed(piece, [&](const std::uint8_t* point) {
-      dabber.dab({coordinate<Float, Bigendian>(point + at[0]), coordinate<Float, Bigendian>(point + at[1]),
-                  coordinate<Float, Bigendian>(point + at[2])});
+      painter.draw_point({coordinate<Float, Bigendian>(point + at[0]),
+                          coordinate<Float, Bigendian>(point + at[1]),
+                          coordinate<Float, Bigendian>(point + at[2])});
     });
     between();
     return {};
   }));
-  return dabber.left_out;
+  return painter.left_out;
 }
 
 }  // namespace

@@ -84,9 +84,9 @@ bool ForwardedGrids::add(std::shared_ptr<const ForwardedGrid> grid, std::uint64_
   Grids& kept = layers_[grid->layer];
   if (!kept.empty() && is_same(*kept.back().grid, *grid)) return false;
   const auto covered = std::ranges::stable_partition(
-      kept, [&](const Kept& older) { return !icd::covers(grid->grid, older.bounds); });
+      kept, [&](const GridEntry& older) { return !icd::covers(grid->grid, older.bounds); });
   auto bounds = icd::GridBounds::from_grid(grid->grid);
-  for (const Kept& older : covered) bounds = icd::joint_bounds(bounds, older.bounds);
+  for (const GridEntry& older : covered) bounds = icd::joint_bounds(bounds, older.bounds);
   forget(kept, covered.begin(), covered.end());
   bytes_ += grid->cost();
   kept.push_back({std::move(grid), number, bounds});
@@ -120,7 +120,7 @@ std::vector<std::shared_ptr<const ForwardedGrid>> ForwardedGrids::grids_in(const
   const auto found = layers_.find(layer);
   if (found == layers_.end()) return grids;
   std::size_t cells = 0;
-  for (const Kept& kept : std::views::reverse(found->second)) {
+  for (const GridEntry& kept : std::views::reverse(found->second)) {
     if (!touch(kept.grid->area, area)) continue;
     cells += kept.grid->data.raw_size;
     if (cells > kMostCells && !grids.empty()) break;
@@ -134,18 +134,18 @@ std::uint64_t ForwardedGrids::newest_in(const Layer& layer, const Area& area) co
   const auto found = layers_.find(layer);
   if (found == layers_.end()) return 0;
   std::uint64_t newest = 0;
-  for (const Kept& kept : found->second) {
+  for (const GridEntry& kept : found->second) {
     if (touch(kept.grid->area, area)) newest = kept.number;
   }
   return newest;
 }
 
-std::optional<Finer> ForwardedGrids::finer(const Layer& layer, std::uint64_t since) const {
+std::optional<FinerLevels> ForwardedGrids::finer_levels(const Layer& layer, std::uint64_t since) const {
   const auto found = layers_.find(layer);
   if (found == layers_.end()) return std::nullopt;
-  Finer finer{.version = found->second.back().number, .area = {}};
+  FinerLevels finer{.version = found->second.back().number, .area = {}};
   double smallest = kPixel;
-  for (const Kept& kept : found->second) {
+  for (const GridEntry& kept : found->second) {
     smallest = std::min(smallest, kept.grid->grid.resolution);
     if (kept.number > since) extend(finer.area, kept.grid->area);
   }

@@ -51,16 +51,16 @@ class ForwardedGrids {
   std::uint64_t newest_in(const Layer& layer, const Area& area) const;
   /// The finest level of a layer, and the area that changed after `since`. nullopt if it has no level finer
   /// than the mosaic's.
-  std::optional<Finer> finer(const Layer& layer, std::uint64_t since) const;
+  std::optional<FinerLevels> finer_levels(const Layer& layer, std::uint64_t since) const;
   std::size_t bytes() const { return bytes_; }
 
  private:
-  struct Kept {
+  struct GridEntry {
     std::shared_ptr<const ForwardedGrid> grid;
     std::uint64_t number = 0;
     icd::GridBounds bounds;  // of it and of all that it replaced
   };
-  using Grids = std::vector<Kept>;  // oldest first; never empty
+  using Grids = std::vector<GridEntry>;  // oldest first; never empty
   void forget(Grids& grids, Grids::iterator first, Grids::iterator end);
   void keep_to_budget();
 

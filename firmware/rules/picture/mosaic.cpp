@@ -18,7 +18,7 @@ bool share_span(double a, double b, double spacing) {
 std::size_t cost_of(const Version& version) {
   constexpr std::size_t kAllocation = 32;  // overhead of an allocation
   const std::size_t own = sizeof(Version) + kAllocation;
-  return version.tile ? own + sizeof(Packed) + kAllocation + version.tile->deflated.size() : own;
+  return version.tile ? own + sizeof(PackedTile) + kAllocation + version.tile->deflated.size() : own;
 }
 
 void History::add(Version version, double spacing) {
@@ -174,7 +174,7 @@ void Mosaic::keep_to_budget() {
   }
 }
 
-Mosaic::Shown Mosaic::tile(const Layer& layer, const TileIndex& at, std::optional<double> stamp) const {
+Mosaic::ShownTile Mosaic::tile(const Layer& layer, const TileIndex& at, std::optional<double> stamp) const {
   const auto state = layers_.find(layer);
   if (state == layers_.end()) return {};
   const auto found = state->second.tiles.find(at);
@@ -232,7 +232,7 @@ std::vector<LayerView> Mosaic::layers(std::uint64_t since) const {
   return views;
 }
 
-bool Mosaic::take_up(const Layer& layer, const TileIndex& at, Tile tile, double stamp) {
+bool Mosaic::restore(const Layer& layer, const TileIndex& at, Tile tile, double stamp) {
   State* state = state_of(layer, stamp);
   if (state == nullptr) return false;
   const auto found = state->tiles.find(at);
@@ -251,7 +251,7 @@ bool Mosaic::take_up(const Layer& layer, const TileIndex& at, Tile tile, double 
   return true;
 }
 
-void Mosaic::take_up(const LayerView& view) {
+void Mosaic::restore(const LayerView& view) {
   State* state = state_of(view.layer, view.first);
   if (state == nullptr) return;
   LayerView& own = state->view;
@@ -263,7 +263,7 @@ void Mosaic::take_up(const LayerView& view) {
   own.left_out = view.left_out;
 }
 
-void Mosaic::take_up(Mosaic earlier, double stamp) {
+void Mosaic::restore(Mosaic earlier, double stamp) {
   if (earlier.layers_.empty()) return;
   last_ = std::max(last_, earlier.last_);  // the time of day may have been set back since
   const double now = begin_change(stamp);
@@ -272,16 +272,16 @@ void Mosaic::take_up(Mosaic earlier, double stamp) {
   for (auto& [layer, its] : earlier.layers_) {
     State* state = state_of(layer, its.view.first);
     if (state == nullptr) continue;
-    take_up(its.view);
+    restore(its.view);
     state->view.version = version_;
-    for (auto& [at, history] : its.tiles) take_up(*state, at, history, now);
+    for (auto& [at, history] : its.tiles) restore(*state, at, history, now);
   }
   keep_to_budget();
 }
 
 /// The history of a tile that exists here is not extended: a wiped tile has states of another run, and no
 /// state can be inserted before them.
-void Mosaic::take_up(State& state, const TileIndex& at, const History& earlier, double stamp) {
+void Mosaic::restore(State& state, const TileIndex& at, const History& earlier, double stamp) {
   const auto found = state.tiles.find(at);
   if (found != state.tiles.end()) {
     if (!found->second.newest().tile) put(state, at, earlier.newest().tile, stamp);

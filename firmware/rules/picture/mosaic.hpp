@@ -65,7 +65,7 @@ struct TileView {
 };
 
 /// The finer levels of a layer, and their changes.
-struct Finer {
+struct FinerLevels {
   int level = 0;              // the finest: -1 or -2
   std::uint64_t version = 0;  // of the last change
   std::optional<Area> area;   // that changed
@@ -81,7 +81,7 @@ struct LayerView {
   std::size_t missed = 0;      // maps that are not in it
   std::size_t left_out = 0;    // Drawing::left_out of the last map
   std::vector<TileView> tiles;
-  std::optional<Finer> finer;  // from ForwardedGrids
+  std::optional<FinerLevels> finer;  // from ForwardedGrids
 };
 
 /// The picture of all maps: the layers, their tiles, and earlier states of the tiles. It stores tiles; draw()
@@ -120,22 +120,22 @@ class Mosaic {
 
   /// Restores a state of a tile from before a restart. Call it in the order of the tile's states. False if
   /// the order is violated or there is no room.
-  bool take_up(const Layer& layer, const TileIndex& at, Tile tile, double stamp);
+  bool restore(const Layer& layer, const TileIndex& at, Tile tile, double stamp);
   /// Restores the data of a layer, except its tiles.
-  void take_up(const LayerView& view);
+  void restore(const LayerView& view);
   void set_wipe_time(double stamp) { wiped_ = stamp; }
   /// Adds all of `earlier`: its present layers, and earlier states of tiles that are not drawn here. Tiles
   /// that are drawn here stay. Added tiles count as changed at `stamp`.
-  void take_up(Mosaic earlier, double stamp);
+  void restore(Mosaic earlier, double stamp);
 
   /// The tile at `stamp` (absent: now). `tile` is null if nothing is drawn there.
-  struct Shown {
+  struct ShownTile {
     Tile tile;
     bool newest = false;
     double stamp = 0;             // the start of this state
     std::optional<double> until;  // when the next state followed; nullopt: it is the newest
   };
-  Shown tile(const Layer& layer, const TileIndex& at, std::optional<double> stamp) const;
+  ShownTile tile(const Layer& layer, const TileIndex& at, std::optional<double> stamp) const;
 
   /// Tiles of grids in the base, by place and robot. Only places with a tile that changed after version
   /// `since`. Valid until the next change.
@@ -163,7 +163,7 @@ class Mosaic {
   };
   State* state_of(const Layer& layer, double stamp);
   double begin_change(double stamp);
-  void take_up(State& state, const TileIndex& at, const History& earlier, double stamp);
+  void restore(State& state, const TileIndex& at, const History& earlier, double stamp);
   bool has_room(const State& state, const Drawing& drawing) const;
   void put(State& state, const TileIndex& at, Tile tile, double stamp);
   void keep_to_budget();

@@ -114,7 +114,7 @@ std::string bytes_of(std::span<const Colour> palette) {
 
 }  // namespace
 
-std::string write_png(const Packed& tile, std::span<const Colour> palette) {
+std::string write_png(const PackedTile& tile, std::span<const Colour> palette) {
   constexpr std::size_t kFraming = 128;
   std::string png;
   png.reserve(tile.deflated.size() + palette.size() * 3 + kFraming);

@@ -45,7 +45,7 @@ Packer::Packer() : streams_(std::make_unique<Streams>()), rows_(kRow * kSide) {
 }
 Packer::~Packer() = default;
 
-bool Packer::read_rows(const Packed& packed) {
+bool Packer::read_rows(const PackedTile& packed) {
   z_stream& zlib = streams_->in;
   inflateReset(&zlib);
   zlib.next_in = const_cast<Bytef*>(packed.deflated.data());  // zlib does not change its input
@@ -55,7 +55,7 @@ bool Packer::read_rows(const Packed& packed) {
   return inflate(&zlib, Z_FINISH) == Z_STREAM_END && zlib.avail_out == 0 && zlib.avail_in == 0;
 }
 
-bool Packer::is_whole(const Packed& packed) {
+bool Packer::is_whole(const PackedTile& packed) {
   if (!read_rows(packed) || crc_of(packed.deflated) != packed.crc) return false;
   for (std::size_t row = 0; row < kSide; ++row) {
     if (rows_[row * kRow] != 0) return false;  // a filter
@@ -75,13 +75,13 @@ Tile Packer::pack(const Pixels& pixels) {
   zlib.next_out = made_.data();
   zlib.avail_out = static_cast<uInt>(made_.size());
   deflate(&zlib, Z_FINISH);  // cannot fail: the buffer holds the largest output
-  auto packed = std::make_shared<Packed>();
+  auto packed = std::make_shared<PackedTile>();
   packed->deflated.assign(made_.data(), zlib.next_out);
   packed->crc = crc_of(packed->deflated);
   return packed;
 }
 
-void Packer::unpack(const Packed& packed, Pixels& pixels) {
+void Packer::unpack(const PackedTile& packed, Pixels& pixels) {
   read_rows(packed);  // cannot fail: pack() made it
   for (std::size_t row = 0; row < kSide; ++row) {
     std::copy_n(rows_.data() + row * kRow + 1, kSide, pixels.data() + row * kSide);

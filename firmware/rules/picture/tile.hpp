@@ -109,11 +109,11 @@ inline constexpr std::size_t index_of(int x, int y) {
 
 /// A tile as stored: the content of a PNG's IDAT chunk (a zlib stream of unfiltered rows), without the
 /// palette, which all tiles share.
-struct Packed {
+struct PackedTile {
   std::vector<std::uint8_t> deflated;
   std::uint32_t crc = 0;  // of the chunk, by PNG 5.5; equal tiles have equal values
 };
-using Tile = std::shared_ptr<const Packed>;  // null: blank
+using Tile = std::shared_ptr<const PackedTile>;  // null: blank
 
 /// Packs many tiles with one zlib stream, because creating a stream is expensive. For one thread.
 class Packer {
@@ -124,14 +124,14 @@ class Packer {
   Packer& operator=(const Packer&) = delete;
 
   Tile pack(const Pixels& pixels);
-  void unpack(const Packed& packed, Pixels& pixels);
+  void unpack(const PackedTile& packed, Pixels& pixels);
   /// False if a tile read from disk is damaged.
-  bool is_whole(const Packed& packed);
+  bool is_whole(const PackedTile& packed);
 
  private:
   struct Streams;
   /// Inflates into rows_. False: not one whole tile.
-  bool read_rows(const Packed& packed);
+  bool read_rows(const PackedTile& packed);
 
   std::unique_ptr<Streams> streams_;
   std::vector<std::uint8_t> rows_, made_;

@@ -18,7 +18,7 @@ struct Trial {
   Instant rests_until{};            // other messages go first until then
   bool steps_behind = false;        // one other message goes first
 
-  bool rests(Instant now) const { return steps_behind || now < rests_until; }
+  bool is_resting(Instant now) const { return steps_behind || now < rests_until; }
 };
 
 /// Decides whether a message of one URI fails by its own fault, or because the Command Post fails for all.
@@ -36,20 +36,20 @@ class Blame {
   static constexpr std::chrono::seconds kLongestRest{60};
   static constexpr std::size_t kMostSenders = 1000;
 
-  enum class Next { Again, Reject };
+  enum class Decision { Retry, Reject };
 
   /// A message of `whose` (for example a robot's grids) was accepted.
   void on_passed(const std::string& whose, Instant now);
   /// A message of `whose` failed. Updates `trial`, the failures of that message. `may_reject`: the answer was
   /// about the message rather than about the sender, the token or the server.
-  Next on_failed(const std::string& whose, Trial& trial, Instant now, bool may_reject = true);
+  Decision on_failed(const std::string& whose, Trial& trial, Instant now, bool may_reject = true);
 
  private:
   struct Sender {
     bool passes = false;             // its last message was accepted
     std::optional<Instant> wavered;  // when a message failed after another one was accepted
   };
-  bool somebody_wavered(const std::string& but, Instant since) const;
+  bool has_other_wavered(const std::string& but, Instant since) const;
   Sender& sender(const std::string& whose);
 
   std::map<std::string, Sender> senders_;

@@ -29,7 +29,7 @@ Cells cells_about(const icd::OccupancyGrid& lattice, const Extent& extent) {
 }
 
 /// The one tile that stands for all tiles with unknown cells.
-const std::shared_ptr<const CanvasTile>& not_known() {
+const std::shared_ptr<const CanvasTile>& unknown_tile() {
   static const auto tile = [] {
     auto made = std::make_shared<CanvasTile>();
     made->cells.fill(CanvasTile::kNotKnown);
@@ -59,7 +59,7 @@ Extent extent_of(const icd::OccupancyGrid& grid) {
                       y + height + (is_turned ? width : 0)};
   const bool is_finite = std::isfinite(extent.left) && std::isfinite(extent.bottom) &&
                          std::isfinite(extent.right) && std::isfinite(extent.top);
-  return is_finite ? extent : Extent::everywhere();
+  return is_finite ? extent : Extent::infinite();
 }
 
 Canvas::Canvas(std::uint64_t number, const icd::OccupancyGrid& lattice, const std::optional<Extent>& before)
@@ -109,7 +109,7 @@ void Canvas::forget(const Cells& cells) {
   const Cells touched = tiles_of(cells);
   icd::require(touched.width * touched.height <= kMostTouched);
   for (std::int64_t y = touched.y; y < touched.top(); ++y) {
-    for (std::int64_t x = touched.x; x < touched.right(); ++x) tiles_[{y, x}] = {not_known(), 0};
+    for (std::int64_t x = touched.x; x < touched.right(); ++x) tiles_[{y, x}] = {unknown_tile(), 0};
   }
 }
 
@@ -132,27 +132,27 @@ void Canvas::add_times(std::vector<std::uint64_t>& when) const {
 
 void Canvas::forget_before(std::uint64_t when) noexcept {
   for (auto& [place, laid] : tiles_) {
-    if (laid.when > 0 && laid.when < when) laid = {not_known(), 0};
+    if (laid.when > 0 && laid.when < when) laid = {unknown_tile(), 0};
   }
 }
 
 namespace {
 
-void add(Canvases::Posted& to, const std::string& name, const Extent& extent) {
+void add(Canvases::PostedAreas& to, const std::string& name, const Extent& extent) {
   if (to.size() >= Canvases::kMostNames && !to.contains(name)) {
-    to[Canvases::kAnyName] = Extent::everywhere();
+    to[Canvases::kAnyName] = Extent::infinite();
     return;
   }
   const auto [its, is_new] = to.try_emplace(name, extent);
   if (!is_new) its->second = bounding_box(its->second, extent);
 }
 
-void add(Canvases::Posted& to, const Canvases::Posted& from) {
+void add(Canvases::PostedAreas& to, const Canvases::PostedAreas& from) {
   for (const auto& [name, extent] : from) add(to, name, extent);
 }
 
 /// Where grids of that name are, or may be; nothing if there are none.
-std::optional<Extent> extent_in(const Canvases::Posted& sent, const std::string& name) {
+std::optional<Extent> extent_in(const Canvases::PostedAreas& sent, const std::string& name) {
   std::optional<Extent> all;
   for (const std::string& key : {std::string(Canvases::kAnyName), name}) {
     const auto found = sent.find(key);
@@ -163,7 +163,7 @@ std::optional<Extent> extent_in(const Canvases::Posted& sent, const std::string&
 
 }  // namespace
 
-void Canvases::carry_on(Posted before) {
+void Canvases::restore(PostedAreas before) {
   before_ = posted_ = std::move(before);
   sent_.clear();
 }
@@ -178,41 +178,41 @@ std::optional<std::pair<std::string, Extent>> Canvases::grows(const icd::MapUpda
   const std::string name = icd::text_of(grid.name);
   const Extent extent = extent_of(std::get<icd::OccupancyGrid>(grid.msg));
   const auto before = posted_.find(name);
-  if (before == posted_.end() && posted_.size() >= kMostNames) return {{kAnyName, Extent::everywhere()}};
+  if (before == posted_.end() && posted_.size() >= kMostNames) return {{kAnyName, Extent::infinite()}};
   if (before == posted_.end()) return {{name, extent}};
   if (before->second.holds(extent)) return {};
   return {{name, bounding_box(before->second, extent)}};
 }
 
 /// Grids of an earlier process may have arrived just before this process start.
-Canvases::Sent& Canvases::here() {
+Canvases::SentGrids& Canvases::present_grids() {
   const auto found = sent_.find(command_post_);
   if (found != sent_.end()) return found->second;
-  return sent_.emplace(command_post_, Sent{.all = before_, .newer = before_, .older = {}}).first->second;
+  return sent_.emplace(command_post_, SentGrids{.all = before_, .newer = before_, .older = {}}).first->second;
 }
 
 void Canvases::on_status(std::span<const icd::MapUpdate* const> under_way) {
-  Posted newer;
+  PostedAreas newer;
   for (const icd::MapUpdate* map : under_way) {
     if (map->is_grid())
       add(newer, icd::text_of(map->name), extent_of(std::get<icd::OccupancyGrid>(map->msg)));
   }
-  Sent& sent = here();
+  SentGrids& sent = present_grids();
   sent.older = std::exchange(sent.newer, std::move(newer));
 }
 
 /// A later process also treats grids of earlier runs as sent, because it does not know when the runs ended.
 void Canvases::begin_run() {
   canvases_.clear();
-  Sent& sent = here();
-  Posted all = sent.older;
+  SentGrids& sent = present_grids();
+  PostedAreas all = sent.older;
   add(all, sent.newer);
   sent.all = std::move(all);
 }
 
-void Canvases::take_up_run() {
+void Canvases::resume_run() {
   canvases_.clear();
-  add(here().all, posted_);
+  add(present_grids().all, posted_);
 }
 
 const Canvas* Canvases::find(const std::optional<icd::RobotName>& name) const {
@@ -225,7 +225,7 @@ void Canvases::on_send(QueuedMap& next) {
   const auto& grid = std::get<icd::OccupancyGrid>(next.map.msg);
   const Extent extent = extent_of(grid);
   const std::string name = icd::text_of(next.map.name);
-  Sent& sent = here();
+  SentGrids& sent = present_grids();
   const std::optional<Extent> before = extent_in(sent.all, name);
   add(sent.newer, name, extent);
   add(sent.all, name, extent);
@@ -241,7 +241,7 @@ void Canvases::on_send(QueuedMap& next) {
   if (its == canvases_.end()) its = canvases_.emplace(next.map.name, Canvas(++numbers_, grid, before)).first;
   const auto cells = its->second.cells_of(grid);
   if (!cells) return;
-  auto ground = may_join(next) ? std::make_shared<const Ground>(its->second.ground_at(*cells)) : nullptr;
+  auto ground = can_join(next) ? std::make_shared<const Ground>(its->second.ground_at(*cells)) : nullptr;
   its->second.forget(*cells);
   next.ground = std::move(ground);
 }

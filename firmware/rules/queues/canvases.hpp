@@ -52,7 +52,7 @@ class Canvas {
   void forget_before(std::uint64_t when) noexcept;
 
  private:
-  struct Laid {
+  struct PlacedTile {
     std::shared_ptr<const CanvasTile> tile;
     std::uint64_t when = 0;  // 0: the cells are unknown
   };
@@ -61,7 +61,7 @@ class Canvas {
   std::uint64_t number_;
   icd::OccupancyGrid lattice_;
   std::optional<Cells> before_;
-  std::map<std::pair<std::int64_t, std::int64_t>, Laid> tiles_;  // by row and column
+  std::map<std::pair<std::int64_t, std::int64_t>, PlacedTile> tiles_;  // by row and column
 };
 
 /// The cells that were last sent of each robot's grids. MapQueue stitches grids into one rectangle and fills
@@ -81,13 +81,13 @@ class Canvases {
   explicit Canvases(std::size_t most_tiles = kMostTiles) : most_tiles_(most_tiles) {}
 
   /// By the grids' name: the extent in which grids were posted, or sent. kAnyName stands for all names.
-  using Posted = std::map<std::string, Extent>;
+  using PostedAreas = std::map<std::string, Extent>;
   static constexpr const char* kAnyName = "*";
 
   /// Sets the Command Post that maps are sent to from now on.
   void lead_to(std::string command_post);
   /// Sets what earlier processes may have sent.
-  void carry_on(Posted before);
+  void restore(PostedAreas before);
   /// The extent to be recorded before `grid` is accepted, so that a later process knows it; nothing if it is
   /// recorded already.
   std::optional<std::pair<std::string, Extent>> grows(const icd::MapUpdate& grid) const;
@@ -103,7 +103,7 @@ class Canvases {
   /// the status before that one may have arrived in the new run. What other Command Posts have stays.
   void begin_run();
   /// An earlier run goes on: its map may have any cell that was posted.
-  void take_up_run();
+  void resume_run();
 
   /// The canvas of the grids of that name, or null if there is none.
   const Canvas* find(const std::optional<icd::RobotName>& name) const;
@@ -116,18 +116,19 @@ class Canvases {
 
  private:
   /// The grids that were sent to one Command Post.
-  struct Sent {
-    Posted all;           // what its present map may have
-    Posted newer, older;  // sent since the last status of the present run; between that and the one before
+  struct SentGrids {
+    PostedAreas all;  // what its present map may have
+    PostedAreas newer,
+        older;  // sent since the last status of the present run; between that and the one before
   };
-  Sent& here();
+  SentGrids& present_grids();
   void forget_oldest();
 
   std::size_t most_tiles_;
   std::string command_post_;
   std::map<std::optional<icd::RobotName>, Canvas> canvases_;
-  Posted before_, posted_;            // until this process start, and until now
-  std::map<std::string, Sent> sent_;  // by Command Post
+  PostedAreas before_, posted_;            // until this process start, and until now
+  std::map<std::string, SentGrids> sent_;  // by Command Post
   std::uint64_t numbers_ = 0, laid_ = 0;
 };
 

@@ -17,7 +17,7 @@ namespace adit::queues {
 struct Extent {
   double left = 0, bottom = 0, right = 0, top = 0;
 
-  static constexpr Extent everywhere() {
+  static constexpr Extent infinite() {
     constexpr double kFar = std::numeric_limits<double>::infinity();
     return {-kFar, -kFar, kFar, kFar};
   }
@@ -34,7 +34,7 @@ inline Extent bounding_box(const Extent& a, const Extent& b) {
 }
 
 /// A rectangle that holds all cells of `grid` and at least one more cell on each side. It is larger if the
-/// grid is rotated, and everywhere() if it has no finite bounds.
+/// grid is rotated, and infinite() if it has no finite bounds.
 Extent extent_of(const icd::OccupancyGrid& grid);
 
 /// A rectangle of cells of one lattice.

@@ -16,7 +16,7 @@ bool can_swap(const QueuedMap& one, const QueuedMap& other) {
 }
 
 /// The first map that goes ahead is a trial: until it is accepted, no other map goes ahead.
-bool Pipelining::may_go(const QueuedMap& next, const Before& before, Instant now) const {
+bool Pipelining::can_send(const QueuedMap& next, const PreviousMap& before, Instant now) const {
   if (taken_ < well_ || now > before.arrived + kLate) return false;
   if (before.went_ahead && !tried_) return false;
   if (before.map.trial.failures > 0 || next.trial.failures > 0) return false;
@@ -38,31 +38,31 @@ void Pipelining::on_failed(bool two) {
 
 namespace {
 
-bool goes_last(const QueuedMap& waiting) {
+bool is_deferred(const QueuedMap& waiting) {
   return waiting.packing >= PackingRule::Last;
 }
 
 SenderQueue::Rest rest_of(const QueuedMap& waiting) {
-  return {goes_last(waiting), waiting.trial.failed.value_or(Instant{}), waiting.accepted};
+  return {is_deferred(waiting), waiting.trial.failed.value_or(Instant{}), waiting.accepted};
 }
 
 /// The most looks at a canvas for one message: bounds the work.
 constexpr std::size_t kMostLooks = 4096;
 
 /// Whether it can replace queued maps at all.
-bool may_replace(const QueuedMap& newer) {
+bool can_replace(const QueuedMap& newer) {
   return newer.map.is_grid() || newer.is_whole;
 }
 
 }  // namespace
 
-Replaced SenderQueue::add(QueuedMap added) {
-  const auto stays = [&](const QueuedMap& waiting) { return !says_all_of(added, waiting); };
-  const auto first = may_replace(added) ? std::ranges::find_if_not(waiting_, stays) : waiting_.end();
+ReplacedMaps SenderQueue::add(QueuedMap added) {
+  const auto stays = [&](const QueuedMap& waiting) { return !contains_all_of(added, waiting); };
+  const auto first = can_replace(added) ? std::ranges::find_if_not(waiting_, stays) : waiting_.end();
   const auto gone = std::stable_partition(first, waiting_.end(), stays);
-  Replaced replaced;
+  ReplacedMaps replaced;
   for (auto it = gone; it != waiting_.end(); ++it) {
-    bytes_ -= bytes_held(*it);
+    bytes_ -= memory_bytes(*it);
     queues::replace(added, std::move(*it), replaced);
   }
   waiting_.erase(gone, waiting_.end());
@@ -71,52 +71,52 @@ Replaced SenderQueue::add(QueuedMap added) {
 }
 
 void SenderQueue::append(QueuedMap added) {
-  bytes_ += bytes_held(added);
+  bytes_ += memory_bytes(added);
   waiting_.push_back(std::move(added));
 }
 
 /// An older grid goes first, because its cells must not overwrite newer ones, unless it goes last of all
 /// maps. Clouds go in the order of their age.
 SenderQueue::Maps::const_iterator SenderQueue::ready(Instant now) const {
-  const auto rests = [now](const QueuedMap& waiting) { return waiting.trial.rests(now); };
+  const auto rests = [now](const QueuedMap& waiting) { return waiting.trial.is_resting(now); };
   const auto lets_others_pass = [&](const QueuedMap& waiting) {
-    return goes_last(waiting) ||
+    return is_deferred(waiting) ||
            (rests(waiting) && (!waiting.map.is_grid() || waiting.trial.failures >= kInPlace));
   };
   const auto first = std::ranges::find_if_not(waiting_, lets_others_pass);
   return first == waiting_.end() || rests(*first) ? waiting_.end() : first;
 }
 
-SenderQueue::Maps::const_iterator SenderQueue::rested_longest() const {
+SenderQueue::Maps::const_iterator SenderQueue::longest_rested() const {
   icd::require(!waiting_.empty());
   if (!waiting_.front().map.is_grid()) return std::ranges::min_element(waiting_, {}, rest_of);
-  const auto first = std::ranges::find_if_not(waiting_, goes_last);
+  const auto first = std::ranges::find_if_not(waiting_, is_deferred);
   return first == waiting_.end() ? waiting_.begin() : first;
 }
 
 SenderQueue::Rest SenderQueue::resting() const {
-  return rest_of(*rested_longest());
+  return rest_of(*longest_rested());
 }
 
 QueuedMap SenderQueue::pop(Instant now, std::size_t merge_bytes, Canvases& canvases) {
   icd::require(!waiting_.empty());
   const auto may_go = ready(now);
-  const auto chosen = may_go == waiting_.end() ? rested_longest() : may_go;
+  const auto chosen = may_go == waiting_.end() ? longest_rested() : may_go;
   const auto place = static_cast<std::size_t>(chosen - waiting_.begin());
   // The chosen map and those that go with it. They are removed at the end, when nothing can fail any more.
   std::vector<bool> leaves(waiting_.size());
   leaves[place] = true;
   QueuedMap next = *chosen;
   if (next.map.is_grid()) {
-    if (may_join(next)) stitch_followers(next, place, canvases.find(next.map.name), leaves);
+    if (can_join(next)) stitch_followers(next, place, canvases.find(next.map.name), leaves);
     canvases.on_send(next);
-  } else if (may_join(next)) {
+  } else if (can_join(next)) {
     merge_followers(next, merge_bytes, leaves);
   }
   auto leaving = leaves.begin();
   std::erase_if(waiting_, [&](const QueuedMap& waiting) {
     if (!*leaving++) return false;
-    bytes_ -= bytes_held(waiting);
+    bytes_ -= memory_bytes(waiting);
     return true;
   });
   return next;
@@ -127,7 +127,7 @@ void SenderQueue::merge_followers(QueuedMap& next, std::size_t merge_bytes, std:
     const QueuedMap& other = waiting_[i];
     if (leaves[i]) continue;
     if (other.trial.failures > 0) continue;  // a map on trial goes alone
-    const bool fits = may_join(other) && can_merge(next.map, other.map) &&
+    const bool fits = can_join(other) && can_merge(next.map, other.map) &&
                       next.map.data.raw_size + other.map.data.raw_size <= merge_bytes;
     if (!fits) return;
     leaves[i] = true;
@@ -142,7 +142,7 @@ std::vector<std::size_t> SenderQueue::followers_of(std::size_t place) const {
   const auto& first = std::get<icd::OccupancyGrid>(waiting_[place].map.msg);
   std::vector<std::size_t> places;
   for (std::size_t i = place; i < waiting_.size() && places.size() < kMostStitched; ++i) {
-    if (!may_join(waiting_[i])) break;
+    if (!can_join(waiting_[i])) break;
     if (!cells_in(first, std::get<icd::OccupancyGrid>(waiting_[i].map.msg))) break;
     places.push_back(i);
   }
@@ -160,7 +160,7 @@ void SenderQueue::stitch_followers(QueuedMap& next, std::size_t place, const Can
   for (const std::size_t i : places) cells.push_back(*cells_in(*grid_at(place), *grid_at(i)));
   const auto first = canvas == nullptr ? std::nullopt : canvas->cells_of(*grid_at(place));
   std::size_t looks = kMostLooks;
-  const Stitch found = first && std::ranges::all_of(waiting_, may_join)
+  const Stitch found = first && std::ranges::all_of(waiting_, can_join)
                            ? stitch(cells,
                                     [&](const Cells& all, std::span<const Cells> those) {
                                       return canvas->knows(*first, all, those, looks);
@@ -191,11 +191,11 @@ SenderQueue::Maps::const_iterator SenderQueue::place_before_newer(const QueuedMa
   return std::ranges::find_if(waiting_, [&](const QueuedMap& waiting) { return is_newer(waiting, back); });
 }
 
-Replaced SenderQueue::put_back(QueuedMap map) {
+ReplacedMaps SenderQueue::put_back(QueuedMap map) {
   map.ground.reset();
   if (map.has_gaps) {
     // At the next try, newer cells may have been sent between its parts.
-    const bool may_join_again = may_join(map);
+    const bool may_join_again = can_join(map);
     const auto place = place_before_newer(map);
     insert(place, parts_of(std::move(map), may_join_again));
     return {};
@@ -203,15 +203,15 @@ Replaced SenderQueue::put_back(QueuedMap map) {
   const auto newer =
       std::ranges::find_if(waiting_, [&](const QueuedMap& waiting) { return replaces(waiting, map); });
   if (newer == waiting_.end()) {
-    const std::size_t bytes = bytes_held(map);
+    const std::size_t bytes = memory_bytes(map);
     waiting_.insert(place_before_newer(map), std::move(map));
     bytes_ += bytes;
     return {};
   }
-  Replaced replaced;
-  const std::size_t before = bytes_held(*newer);
+  ReplacedMaps replaced;
+  const std::size_t before = memory_bytes(*newer);
   queues::replace(*newer, std::move(map), replaced);
-  bytes_ += bytes_held(*newer) - before;
+  bytes_ += memory_bytes(*newer) - before;
   return replaced;
 }
 
@@ -227,7 +227,7 @@ void SenderQueue::put_back_halves(QueuedMap map) {
 
 void SenderQueue::insert(Maps::const_iterator place, std::vector<QueuedMap> parts) {
   std::size_t bytes = 0;
-  for (const QueuedMap& part : parts) bytes += bytes_held(part);
+  for (const QueuedMap& part : parts) bytes += memory_bytes(part);
   waiting_.insert(place, std::move_iterator(parts.begin()), std::move_iterator(parts.end()));
   bytes_ += bytes;
 }
@@ -240,53 +240,54 @@ void SenderQueue::step_forward() {
   for (QueuedMap& each : waiting_) each.trial.steps_behind = false;
 }
 
-std::optional<Successive> SenderQueue::to_compare() const {
+std::optional<CloudPair> SenderQueue::uncompared_clouds() const {
   if (waiting_.size() < 2 || waiting_.back().is_compared) return {};
   const QueuedMap &older = waiting_[waiting_.size() - 2], &newer = waiting_.back();
   if (!can_merge(older.map, newer.map)) return {};
-  return Successive{.sender = Sender::from_map(newer.map),
-                    .older_updates = older.updates,
-                    .newer_updates = newer.updates,
-                    .older = older.map.data,
-                    .newer = newer.map.data,
-                    .point_step = std::get<icd::PointCloud2>(newer.map.msg).point_step};
+  return CloudPair{.sender = Sender::from_map(newer.map),
+                   .older_updates = older.updates,
+                   .newer_updates = newer.updates,
+                   .older = older.map.data,
+                   .newer = newer.map.data,
+                   .point_step = std::get<icd::PointCloud2>(newer.map.msg).point_step};
 }
 
-void SenderQueue::keep_both(const Successive& two) {
+void SenderQueue::keep_both(const CloudPair& two) {
   for (QueuedMap& waiting : waiting_) {
     if (waiting.updates == two.newer_updates) waiting.is_compared = true;
   }
 }
 
-std::vector<std::uint64_t> SenderQueue::replace(const Successive& two) {
+std::vector<std::uint64_t> SenderQueue::replace(const CloudPair& two) {
   if (waiting_.size() < 2) return {};
   const auto older = waiting_.end() - 2, newer = waiting_.end() - 1;
   const bool are_those =
       older->updates == two.older_updates && older->map.data.raw_size == two.older.raw_size &&
       newer->updates == two.newer_updates && newer->map.data.raw_size == two.newer.raw_size;
   if (!are_those) return {};
-  Replaced replaced;
-  bytes_ -= bytes_held(*older) + bytes_held(*newer);
+  ReplacedMaps replaced;
+  bytes_ -= memory_bytes(*older) + memory_bytes(*newer);
   queues::replace(*newer, std::move(*older), replaced);
-  bytes_ += bytes_held(*newer);
+  bytes_ += memory_bytes(*newer);
   waiting_.erase(older);
   return replaced.numbers;
 }
 
 bool SenderQueue::replaces_any(const QueuedMap& map) const {
-  return may_replace(map) &&
-         std::ranges::any_of(waiting_, [&](const QueuedMap& waiting) { return says_all_of(map, waiting); });
+  return can_replace(map) && std::ranges::any_of(waiting_, [&](const QueuedMap& waiting) {
+           return contains_all_of(map, waiting);
+         });
 }
 
-std::optional<Replaced> SenderQueue::absorb(const QueuedMap& map) {
+std::optional<ReplacedMaps> SenderQueue::absorb(const QueuedMap& map) {
   for (QueuedMap& waiting : waiting_) {
     if (auto replaced = queues::absorb(waiting, map)) return replaced;
   }
   return {};
 }
 
-bool SenderQueue::joins(const QueuedMap& map) const {
-  if (waiting_.empty() || !may_join(waiting_.back())) return false;
+bool SenderQueue::can_join_last(const QueuedMap& map) const {
+  if (waiting_.empty() || !can_join(waiting_.back())) return false;
   const icd::MapUpdate& last = waiting_.back().map;
   if (map.map.is_grid())
     return cells_in(std::get<icd::OccupancyGrid>(last.msg), std::get<icd::OccupancyGrid>(map.map.msg))
@@ -303,7 +304,7 @@ std::size_t SenderQueue::largest_replaceable() const {
   std::size_t most = 0;
   for (const QueuedMap& waiting : waiting_) {
     if (!waiting.map.is_grid() && !waiting.is_whole) continue;
-    most = std::max(most, waiting.parts.empty() ? waiting.map.data.bytes.size() : bytes_held(waiting));
+    most = std::max(most, waiting.parts.empty() ? waiting.map.data.bytes.size() : memory_bytes(waiting));
   }
   return most;
 }
@@ -314,8 +315,8 @@ const SenderQueue* MapQueue::queue_of(const Sender& sender) const {
 }
 
 /// The queue of a sender that is about to get a map.
-MapQueue::Waiting& MapQueue::joins(const Sender& sender) {
-  Waiting& its = senders_[sender];
+MapQueue::SenderEntry& MapQueue::entry_of(const Sender& sender) {
+  SenderEntry& its = senders_[sender];
   if (its.queue.count() == 0) its.turn = turns_.join(its.turn);
   return its;
 }
@@ -332,9 +333,9 @@ QueuedMap MapQueue::waiting(std::uint64_t number, icd::MapUpdate map, Instant no
   return made;
 }
 
-Replaced MapQueue::add(std::uint64_t number, icd::MapUpdate map, Instant now) {
+ReplacedMaps MapQueue::add(std::uint64_t number, icd::MapUpdate map, Instant now) {
   QueuedMap added = waiting(number, std::move(map), now);
-  Waiting& its = joins(Sender::from_map(added.map));
+  SenderEntry& its = entry_of(Sender::from_map(added.map));
   inherit(added.trial, its.trial);
   return its.queue.add(std::move(added));
 }
@@ -344,7 +345,7 @@ void MapQueue::restore(std::uint64_t number, icd::MapUpdate map, Instant now,
   QueuedMap restored = waiting(number, std::move(map), now);
   restored.bounds = bounds;
   restored.packing = packing;
-  Waiting& its = joins(Sender::from_map(restored.map));
+  SenderEntry& its = entry_of(Sender::from_map(restored.map));
   its.queue.append(std::move(restored));
 }
 
@@ -375,7 +376,7 @@ Precision MapQueue::precision_of(const Sender& sender, const SenderQueue& queue)
 std::optional<QueuedMap> MapQueue::pop(Instant now) {
   const auto chosen = next(now);
   if (chosen == senders_.end()) return {};
-  Waiting& its = chosen->second;
+  SenderEntry& its = chosen->second;
   const Precision precision = precision_of(chosen->first, its.queue);
   const std::size_t most = std::min(merge_bytes_, holds_[static_cast<std::size_t>(precision)]);
   QueuedMap taken = its.queue.pop(now, most, canvases_);
@@ -388,13 +389,13 @@ std::optional<QueuedMap> MapQueue::pop(Instant now) {
 
 void MapQueue::forget_idle_senders() {
   std::erase_if(senders_, [&](const auto& each) {
-    return each.second.queue.count() == 0 && !turns_.has_to_pay(each.second.turn) &&
+    return each.second.queue.count() == 0 && !turns_.is_in_debt(each.second.turn) &&
            !each.second.trial.failed;
   });
 }
 
 void MapQueue::on_too_large(const Sender& sender, const Trial& trial) {
-  Waiting& its = senders_[sender];
+  SenderEntry& its = senders_[sender];
   its.trial = trial;
   its.trial.failures = 0;
   its.trial.steps_behind = false;
@@ -411,40 +412,40 @@ void MapQueue::on_passed(const Sender& sender) {
 void MapQueue::charge(const Sender& sender, std::size_t bytes) {
   icd::require(slot_bytes_ > 0);
   if (bytes <= slot_bytes_) return;
-  Waiting& its = senders_[sender];
+  SenderEntry& its = senders_[sender];
   if (its.turn == Turn{}) its.turn = turns_.join({});
-  its.turn = turns_.owe(its.turn, (bytes - 1) / slot_bytes_);
+  its.turn = turns_.charge(its.turn, (bytes - 1) / slot_bytes_);
 }
 
-Replaced MapQueue::put_back(QueuedMap map) {
-  Waiting& its = joins(Sender::from_map(map.map));
+ReplacedMaps MapQueue::put_back(QueuedMap map) {
+  SenderEntry& its = entry_of(Sender::from_map(map.map));
   return its.queue.put_back(std::move(map));
 }
 
 void MapQueue::put_back_single(QueuedMap map) {
-  Waiting& its = joins(Sender::from_map(map.map));
+  SenderEntry& its = entry_of(Sender::from_map(map.map));
   its.queue.put_back_single(std::move(map));
 }
 
 void MapQueue::put_back_halves(QueuedMap map) {
-  Waiting& its = joins(Sender::from_map(map.map));
+  SenderEntry& its = entry_of(Sender::from_map(map.map));
   its.queue.put_back_halves(std::move(map));
 }
 
-std::optional<Successive> MapQueue::to_compare() const {
+std::optional<CloudPair> MapQueue::uncompared_clouds() const {
   for (const auto& [sender, waiting] : senders_) {
     if (sender.is_grid || clouds_of(sender) != Clouds::Auto) continue;
-    if (auto two = waiting.queue.to_compare()) return two;
+    if (auto two = waiting.queue.uncompared_clouds()) return two;
   }
   return {};
 }
 
-std::vector<std::uint64_t> MapQueue::replace(const Successive& two) {
+std::vector<std::uint64_t> MapQueue::replace(const CloudPair& two) {
   const auto found = senders_.find(two.sender);
   return found == senders_.end() ? std::vector<std::uint64_t>{} : found->second.queue.replace(two);
 }
 
-void MapQueue::keep_both(const Successive& two) {
+void MapQueue::keep_both(const CloudPair& two) {
   const auto found = senders_.find(two.sender);
   if (found != senders_.end()) found->second.queue.keep_both(two);
 }
@@ -454,12 +455,12 @@ bool MapQueue::replaces_any(const icd::MapUpdate& map) const {
   return queue != nullptr && queue->replaces_any(waiting(0, map, {}));
 }
 
-bool MapQueue::joins(const icd::MapUpdate& map) const {
+bool MapQueue::can_join_last(const icd::MapUpdate& map) const {
   const SenderQueue* queue = queue_of(Sender::from_map(map));
-  return queue != nullptr && queue->joins(waiting(0, map, {}));
+  return queue != nullptr && queue->can_join_last(waiting(0, map, {}));
 }
 
-std::optional<Replaced> MapQueue::absorb(const QueuedMap& map) {
+std::optional<ReplacedMaps> MapQueue::absorb(const QueuedMap& map) {
   const auto found = senders_.find(Sender::from_map(map.map));
   return found == senders_.end() ? std::nullopt : found->second.queue.absorb(map);
 }

@@ -37,12 +37,12 @@ class Pipelining {
   static constexpr std::chrono::milliseconds kLate{500};
 
   /// The previous map, and when it had arrived.
-  struct Before {
+  struct PreviousMap {
     const QueuedMap& map;
     Instant arrived;
     bool went_ahead;
   };
-  bool may_go(const QueuedMap& next, const Before& before, Instant now) const;
+  bool can_send(const QueuedMap& next, const PreviousMap& before, Instant now) const;
 
   /// A map was accepted. `ahead`: it was sent before the previous map was answered.
   void on_accepted(bool ahead);
@@ -73,7 +73,7 @@ class Turns {
   static constexpr std::uint64_t kMostSlots = 64;
 
   /// The turn of a sender whose queue was empty, behind all others. `last`: its last result of serve() or
-  /// owe().
+  /// charge().
   Turn join(Turn last) { return {std::max(last.round, round_ + 1), ++places_}; }
   /// Serves `turn`, and returns the sender's next turn.
   Turn serve(Turn turn) {
@@ -81,11 +81,11 @@ class Turns {
     return {round_ + 1, ++places_};
   }
   /// The sender's next turn if its message used `slots` more than one slot.
-  Turn owe(Turn next, std::uint64_t slots) const {
+  Turn charge(Turn next, std::uint64_t slots) const {
     return {std::min(next.round + std::min(slots, kMostSlots), round_ + 1 + kMostSlots), next.place};
   }
   /// Whether a sender with an empty queue still has to pay. If not, it can be forgotten.
-  bool has_to_pay(Turn turn) const { return turn.round > round_ + 1; }
+  bool is_in_debt(Turn turn) const { return turn.round > round_ + 1; }
 
  private:
   std::uint64_t round_ = 0;  // the present one
@@ -93,7 +93,7 @@ class Turns {
 };
 
 /// Two successive queued clouds of one sender with the same fields, byte order and origin.
-struct Successive {
+struct CloudPair {
   Sender sender;
   std::vector<std::uint64_t> older_updates, newer_updates;  // QueuedMap::updates, to find them again
   icd::MapData older, newer;                                // not compressed
@@ -106,7 +106,7 @@ class SenderQueue {
   /// After so many failures of a grid, later grids of its name go ahead of it.
   static constexpr int kInPlace = 3;
 
-  Replaced add(QueuedMap added);
+  ReplacedMaps add(QueuedMap added);
   void append(QueuedMap added);  // replaces no map
   /// Whether a map may be sent now. A map that rests may not, nor a grid behind a grid that rests.
   bool is_ready(Instant now) const { return ready(now) != waiting_.end(); }
@@ -116,7 +116,7 @@ class SenderQueue {
   Rest resting() const;
   /// The oldest map that may be sent. If there is none, the map that has rested longest. Requires a map.
   QueuedMap pop(Instant now, std::size_t merge_bytes, Canvases& canvases);
-  Replaced put_back(QueuedMap map);
+  ReplacedMaps put_back(QueuedMap map);
   void put_back_single(QueuedMap map);
   void put_back_halves(QueuedMap map);
   void restart_pieces() {
@@ -125,14 +125,14 @@ class SenderQueue {
   void inherit(const Trial& trial);  // by the maps that have not failed themselves
   void step_forward();               // clears Trial::steps_behind of all maps
 
-  std::vector<std::uint64_t> replace(const Successive& two);
+  std::vector<std::uint64_t> replace(const CloudPair& two);
   /// The last two clouds, if they have not been compared yet.
-  std::optional<Successive> to_compare() const;
-  void keep_both(const Successive& two);
+  std::optional<CloudPair> uncompared_clouds() const;
+  void keep_both(const CloudPair& two);
 
   bool replaces_any(const QueuedMap& map) const;
-  std::optional<Replaced> absorb(const QueuedMap& map);
-  bool joins(const QueuedMap& map) const;
+  std::optional<ReplacedMaps> absorb(const QueuedMap& map);
+  bool can_join_last(const QueuedMap& map) const;
   /// When the oldest queued map was accepted, or nothing.
   std::optional<Instant> oldest() const;
   std::size_t count() const { return waiting_.size(); }
@@ -142,7 +142,7 @@ class SenderQueue {
  private:
   using Maps = std::deque<QueuedMap>;
   Maps::const_iterator ready(Instant now) const;
-  Maps::const_iterator rested_longest() const;
+  Maps::const_iterator longest_rested() const;
   Maps::const_iterator place_before_newer(const QueuedMap& back) const;
   /// Each marks in `leaves`, which has the order of waiting_, the maps that go with `next`.
   void merge_followers(QueuedMap& next, std::size_t merge_bytes, std::vector<bool>& leaves) const;
@@ -169,7 +169,7 @@ class SenderQueue {
 ///   that were last sent there, if these are known (stitch.hpp, canvases.hpp).
 /// - Clouds stay in order. pop() merges clouds that follow each other.
 /// - A cloud replaces all earlier ones if the robot's clouds are Clouds::Whole. With Clouds::Auto it replaces
-///   the previous one if a comparison shows that it has all its points (to_compare(), replace()).
+///   the previous one if a comparison shows that it has all its points (uncompared_clouds(), replace()).
 /// - No other map is dropped.
 /// - A map with PackingRule::Last is taken only if all others rest or are gone.
 ///
@@ -199,10 +199,10 @@ class MapQueue {
   void set_precisions(std::map<icd::RobotName, Precision> precisions) { precisions_ = std::move(precisions); }
   /// The bytes of points that fit into one message; pop() merges no more. With Precision::Auto, pop()
   /// chooses the finest precision at which all queued clouds of the robot fit.
-  void a_message_holds(const PointsAt& points) { holds_ = points; }
+  void set_message_points(const PointsAt& points) { holds_ = points; }
 
   /// Adds a map, which stands from now on for the maps that it replaced. A number is used once.
-  Replaced add(std::uint64_t number, icd::MapUpdate map, Instant now);
+  ReplacedMaps add(std::uint64_t number, icd::MapUpdate map, Instant now);
 
   /// Adds a map that was queued before a restart, with its stored bounds; call in the order of the numbers.
   /// It replaces no other map, because comparisons would delay the start.
@@ -226,7 +226,7 @@ class MapQueue {
   /// Queues a map again that was not delivered, or that the operator sends again: as the sender's first map,
   /// but behind older ones that are sent again. If a newer queued grid covers it, that grid inherits its
   /// updates and age instead, and the map is in the result.
-  Replaced put_back(QueuedMap map);
+  ReplacedMaps put_back(QueuedMap map);
 
   /// Queues the parts of a merged or stitched map again, each by itself, as the sender's first maps. They are
   /// not joined again, so that only the part that the Command Post rejects fails. Requires parts.
@@ -241,20 +241,20 @@ class MapQueue {
 
   /// Two successive clouds that have not been compared yet, or nothing. Call replace() or keep_both() with
   /// the outcome.
-  std::optional<Successive> to_compare() const;
+  std::optional<CloudPair> uncompared_clouds() const;
   /// The newer cloud has all points of the older one and replaces it, if both are still queued unchanged.
   /// Returns the numbers of the updates whose maps are no longer needed.
-  std::vector<std::uint64_t> replace(const Successive& two);
+  std::vector<std::uint64_t> replace(const CloudPair& two);
   /// The newer cloud lacks points of the older one, or the comparison failed.
-  void keep_both(const Successive& two);
+  void keep_both(const CloudPair& two);
 
   /// Whether add() would replace a queued map.
   bool replaces_any(const icd::MapUpdate& map) const;
   /// Whether pop() could merge or stitch it with the last queued map of its sender.
-  bool joins(const icd::MapUpdate& map) const;
+  bool can_join_last(const icd::MapUpdate& map) const;
   /// If a newer queued grid covers `map`, which is not queued, it stands for `map` from now on. Nothing: none
   /// does.
-  std::optional<Replaced> absorb(const QueuedMap& map);
+  std::optional<ReplacedMaps> absorb(const QueuedMap& map);
 
   std::size_t count() const;
   std::size_t count(const Sender& sender) const;
@@ -267,15 +267,15 @@ class MapQueue {
   std::size_t senders() const { return senders_.size(); }
 
  private:
-  struct Waiting {
+  struct SenderEntry {
     SenderQueue queue;
     Turn turn;
     Trial trial{};  // of its last map, if that was too large
   };
-  using Senders = std::map<Sender, Waiting>;
+  using Senders = std::map<Sender, SenderEntry>;
 
   Senders::iterator next(Instant now);
-  Waiting& joins(const Sender& sender);
+  SenderEntry& entry_of(const Sender& sender);
   void forget_idle_senders();
   const SenderQueue* queue_of(const Sender& sender) const;
   QueuedMap waiting(std::uint64_t number, icd::MapUpdate map, Instant now) const;

@@ -53,7 +53,7 @@ MarkerChanges::Place MarkerChanges::apply(icd::Marker marker) {
     return next_ - 1;
   }
   const auto known = places_.lower_bound(marker);
-  const bool is_known = known != places_.end() && !ByKey()(marker, known->first);
+  const bool is_known = known != places_.end() && !KeyLess()(marker, known->first);
   if (marker.action == icd::MarkerAction::Delete && begins_with_delete_all()) {
     // The DeleteAll removes the marker at the Command Post. Only its queued change is dropped.
     if (is_known) extract(known->second);
@@ -113,7 +113,7 @@ MarkerChanges::Size MarkerChanges::size_with(const std::vector<icd::Marker>& new
   });
   const bool wiped = wipe != newer.rend();
   Size size = wiped ? Size{1, icd::bytes_of(*wipe)} : size_;
-  std::map<Key, std::size_t, ByKey> bytes_now;  // of the markers that `newer` changes; 0: not queued
+  std::map<Key, std::size_t, KeyLess> bytes_now;  // of the markers that `newer` changes; 0: not queued
   for (auto marker = wiped ? wipe.base() : newer.begin(); marker != newer.end(); ++marker) {
     const Key key{marker->ns, marker->id};
     std::size_t& bytes = bytes_now.try_emplace(key, wiped ? 0 : bytes_at(key)).first->second;
@@ -147,7 +147,7 @@ void QueuedUpdates::move_first_to(Place last) {
   add(last, first.count, first.accepted);
 }
 
-std::uint64_t QueuedUpdates::take_done(const MarkerChanges& changes) {
+std::uint64_t QueuedUpdates::remove_done(const MarkerChanges& changes) {
   std::uint64_t done = 0;
   while (!empty() &&
          (changes.empty() || by_end_.begin()->first < changes.changes_by_place().begin()->first)) {
@@ -204,7 +204,7 @@ bool MarkerQueue::has_room_for(const icd::MarkersUpdate& update) const {
   return then.count <= std::max(kMostMarkers, now.count) && then.bytes <= std::max(most_bytes, now.bytes);
 }
 
-icd::MarkersUpdate MarkerQueue::those_that_wait(const icd::MarkersUpdate& update) const {
+icd::MarkersUpdate MarkerQueue::queued_changes(const icd::MarkersUpdate& update) const {
   icd::MarkersUpdate known;
   for (const icd::Marker& marker : update.markers) {
     if (marker.action == icd::MarkerAction::DeleteAll) known.markers.clear();
@@ -249,7 +249,7 @@ std::optional<QueuedMarkers> MarkerQueue::pop(icd::Stamp now) {
     taken.is_ahead = true;
   } else {
     taken.update.markers = changes_.pop({most_now_, bounds_.bytes_per_message});
-    taken.updates = updates_.take_done(changes_);
+    taken.updates = updates_.remove_done(changes_);
   }
   for (icd::Marker& marker : taken.update.markers) age(marker, now);
   return taken;

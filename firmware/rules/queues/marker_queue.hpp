@@ -72,7 +72,7 @@ class MarkerChanges {
     std::string ns;
     std::int32_t id = 0;
   };
-  struct ByKey {
+  struct KeyLess {
     using is_transparent = void;
     template <class A, class B>
     bool operator()(const A& a, const B& b) const {
@@ -80,7 +80,7 @@ class MarkerChanges {
     }
   };
   using InOrder = std::map<Place, icd::Marker>;
-  using Places = std::map<Key, Place, ByKey>;
+  using Places = std::map<Key, Place, KeyLess>;
 
   std::size_t bytes_at(const Key& key) const;
   /// `marker` is not in places_; `next`: the first key there that follows.
@@ -112,7 +112,7 @@ class QueuedUpdates {
   /// Moves the end of the first updates to `last`.
   void move_first_to(Place last);
   /// Removes the updates that end before the first of `changes`, and returns their number.
-  std::uint64_t take_done(const MarkerChanges& changes);
+  std::uint64_t remove_done(const MarkerChanges& changes);
   /// If the last change of an update is gone, the update ends at the change before it. This bounds the number
   /// of ends by that of changes.
   void join(const MarkerChanges& changes);
@@ -169,7 +169,7 @@ class MarkerQueue {
   bool has_room_for(const icd::MarkersUpdate& update) const;
   /// For an update without room: its changes of markers that are queued already, so that a full queue holds
   /// the newest change of each. Changes before the last DeleteAll are left out.
-  icd::MarkersUpdate those_that_wait(const icd::MarkersUpdate& update) const;
+  icd::MarkersUpdate queued_changes(const icd::MarkersUpdate& update) const;
   void add(icd::MarkersUpdate update, Instant now);
   /// Adds a part of a large update, because all of it at once would block the loop. Moves from `some`.
   /// `last`: the result of the previous part, or kNowhere. Call end_of_update() after the last part, and no

@@ -91,18 +91,18 @@ bool Cuts::check(std::size_t now_at, std::uint64_t now_delivered) {
   return times >= kMost;
 }
 
-std::size_t bytes_held(const QueuedMap& waiting) {
+std::size_t memory_bytes(const QueuedMap& waiting) {
   constexpr std::size_t kFrame = 1024;
   std::size_t bytes = kFrame + waiting.map.data.bytes.size() + waiting.updates.size() * sizeof(std::uint64_t);
   if (const auto* cloud = std::get_if<icd::PointCloud2>(&waiting.map.msg)) {
     for (const auto& field : cloud->fields) bytes += sizeof field + field.name.size();
   } else {
-    for (const QueuedMap& part : waiting.parts) bytes += bytes_held(part);
+    for (const QueuedMap& part : waiting.parts) bytes += memory_bytes(part);
   }
   return bytes;
 }
 
-std::vector<const icd::MapUpdate*> said_by(const QueuedMap& taken) {
+std::vector<const icd::MapUpdate*> delivered_maps(const QueuedMap& taken) {
   if (!taken.has_gaps) return {&taken.map};
   std::vector<const icd::MapUpdate*> maps;
   maps.reserve(taken.parts.size());
@@ -114,17 +114,18 @@ icd::GridBounds bounds_of(const QueuedMap& grid) {
   return grid.bounds ? *grid.bounds : icd::GridBounds::from_grid(std::get<icd::OccupancyGrid>(grid.map.msg));
 }
 
-bool says_all_of(const QueuedMap& newer, const QueuedMap& older) {
+bool contains_all_of(const QueuedMap& newer, const QueuedMap& older) {
   if (newer.map.name != older.map.name || newer.map.is_grid() != older.map.is_grid()) return false;
   if (!newer.map.is_grid()) return newer.is_whole;
   if (newer.has_gaps) {
-    return std::ranges::any_of(newer.parts, [&](const QueuedMap& part) { return says_all_of(part, older); });
+    return std::ranges::any_of(newer.parts,
+                               [&](const QueuedMap& part) { return contains_all_of(part, older); });
   }
   return icd::covers(std::get<icd::OccupancyGrid>(newer.map.msg), bounds_of(older));
 }
 
 bool replaces(const QueuedMap& newer, const QueuedMap& older) {
-  return is_newer(newer, older) && says_all_of(newer, older);
+  return is_newer(newer, older) && contains_all_of(newer, older);
 }
 
 /// A clock that was set back gives many maps the same stamp. They are sent again oldest first, so the later
@@ -222,7 +223,7 @@ icd::OccupancyGrid rows_of(const QueuedMap& grid) {
   return rows;
 }
 
-bool may_join(const QueuedMap& map) {
+bool can_join(const QueuedMap& map) {
   return map.packing == PackingRule::Any && map.trial.failures == 0 && !map.again;
 }
 
@@ -234,13 +235,13 @@ void add_own_numbers(std::vector<std::uint64_t>& numbers, const QueuedMap& of) {
 namespace {
 
 /// A stitched grid's parts may be queued singly later, so one of them also takes the bounds.
-void take_bounds(QueuedMap& to, const QueuedMap& from, Replaced& replaced) {
+void adopt_bounds(QueuedMap& to, const QueuedMap& from, ReplacedMaps& replaced) {
   if (!to.map.is_grid()) return;
   to.bounds = icd::joint_bounds(bounds_of(to), bounds_of(from));
   QueuedMap* heir = &to;
   if (!to.parts.empty()) {
     const auto part =
-        std::ranges::find_if(to.parts, [&](const QueuedMap& each) { return says_all_of(each, from); });
+        std::ranges::find_if(to.parts, [&](const QueuedMap& each) { return contains_all_of(each, from); });
     heir = part == to.parts.end() ? &to.parts.back() : &*part;
     heir->bounds = icd::joint_bounds(bounds_of(*heir), bounds_of(from));
   }
@@ -250,16 +251,16 @@ void take_bounds(QueuedMap& to, const QueuedMap& from, Replaced& replaced) {
 
 }  // namespace
 
-std::optional<Replaced> absorb(QueuedMap& to, const QueuedMap& from) {
+std::optional<ReplacedMaps> absorb(QueuedMap& to, const QueuedMap& from) {
   if (!replaces(to, from)) return {};
-  Replaced replaced;
-  take_bounds(to, from, replaced);
+  ReplacedMaps replaced;
+  adopt_bounds(to, from, replaced);
   return replaced;
 }
 
-void replace(QueuedMap& to, QueuedMap from, Replaced& replaced) {
+void replace(QueuedMap& to, QueuedMap from, ReplacedMaps& replaced) {
   add_own_numbers(replaced.numbers, from);
-  take_bounds(to, from, replaced);
+  adopt_bounds(to, from, replaced);
   if (to.map.is_grid() && to.piece.size == 0 && from.piece.at > 0) {
     const auto& grid = std::get<icd::OccupancyGrid>(to.map.msg);
     const auto& older = std::get<icd::OccupancyGrid>(from.map.msg);

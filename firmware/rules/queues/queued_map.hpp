@@ -148,12 +148,12 @@ const MapTransition& transition(MapState state, MapEvent event);
 
 /// The maps that are delivered if `taken` is accepted: the map itself, or the parts of a map with gaps,
 /// because a gap has no news.
-std::vector<const icd::MapUpdate*> said_by(const QueuedMap& taken);
+std::vector<const icd::MapUpdate*> delivered_maps(const QueuedMap& taken);
 /// The bounds of a grid and of all that it replaced.
 icd::GridBounds bounds_of(const QueuedMap& grid);
 /// Whether `newer`, which was just accepted, contains all of `older` and of what that replaced: it is a grid
 /// that covers it (icd::covers()), has a part that covers it (if it has gaps), or is a whole cloud.
-bool says_all_of(const QueuedMap& newer, const QueuedMap& older);
+bool contains_all_of(const QueuedMap& newer, const QueuedMap& older);
 /// The same for a retry: `newer` is queued or in flight, and must be newer than `older`, which was not
 /// delivered.
 bool replaces(const QueuedMap& newer, const QueuedMap& older);
@@ -162,13 +162,13 @@ bool replaces(const QueuedMap& newer, const QueuedMap& older);
 bool is_newer(const QueuedMap& waiting, const QueuedMap& back);
 
 /// The bytes of memory that it takes, without its data: itself, its fields, and the allocator's overhead.
-std::size_t bytes_held(const QueuedMap& waiting);
+std::size_t memory_bytes(const QueuedMap& waiting);
 
 /// Appends the numbers of the maps that are sent with it, without those that they replaced.
 void add_own_numbers(std::vector<std::uint64_t>& numbers, const QueuedMap& of);
 
 /// Maps that are no longer needed, because a newer one stands for them.
-struct Replaced {
+struct ReplacedMaps {
   std::vector<std::uint64_t> numbers;  // of their updates
   /// The newer map has larger bounds than its own: its number, and the bounds. Store them before the older
   /// maps are deleted, so that a later process knows them.
@@ -176,12 +176,12 @@ struct Replaced {
 };
 
 /// `to` stands for `from`, which is not queued. Nothing: `to` is older, or does not contain it.
-std::optional<Replaced> absorb(QueuedMap& to, const QueuedMap& from);
+std::optional<ReplacedMaps> absorb(QueuedMap& to, const QueuedMap& from);
 
 /// `to` replaces `from`, which is added to `replaced`, and takes its updates, age and bounds. If `from` is a
 /// grid in pieces, `to` begins with the rows that `from` would have sent next, so that each row is sent even
 /// if grids are replaced faster than their pieces are sent.
-void replace(QueuedMap& to, QueuedMap from, Replaced& replaced);
+void replace(QueuedMap& to, QueuedMap from, ReplacedMaps& replaced);
 
 /// Unless `to` has failed itself, it takes the strikes and the rest of `from`, but never the last two
 /// strikes: it must fail itself to be rejected.
@@ -208,6 +208,6 @@ void shrink(QueuedMap& map, std::size_t pieces);
 bool next_piece(QueuedMap& map);
 
 /// Whether it may be merged or stitched with others.
-bool may_join(const QueuedMap& map);
+bool can_join(const QueuedMap& map);
 
 }  // namespace adit::queues

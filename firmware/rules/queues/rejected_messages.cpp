@@ -13,19 +13,19 @@ std::optional<icd::GridBounds> bounds_in(const icd::MapUpdate& map, const Reject
   return item.bounds ? item.bounds : icd::GridBounds::from_grid(*grid);
 }
 
-bool says_all(const icd::MapUpdate& newer, const icd::MapUpdate& older, const RejectedMessage& item) {
+bool contains_all(const icd::MapUpdate& newer, const icd::MapUpdate& older, const RejectedMessage& item) {
   const auto* const grid = std::get_if<icd::OccupancyGrid>(&newer.msg);
   const auto bounds = bounds_in(older, item);
   return grid != nullptr && bounds && newer.name == older.name && icd::covers(*grid, *bounds);
 }
 
-bool says_all(const icd::StateUpdate& newer, const icd::StateUpdate& older, const RejectedMessage&) {
+bool contains_all(const icd::StateUpdate& newer, const icd::StateUpdate& older, const RejectedMessage&) {
   return std::ranges::all_of(older.poses, [&](const icd::NamedPose& pose) {
     return std::ranges::find(newer.poses, pose.name, &icd::NamedPose::name) != newer.poses.end();
   });
 }
 
-bool says_all(const icd::MarkersUpdate& newer, const icd::MarkersUpdate& older, const RejectedMessage&) {
+bool contains_all(const icd::MarkersUpdate& newer, const icd::MarkersUpdate& older, const RejectedMessage&) {
   return std::ranges::all_of(older.markers, [&](const icd::Marker& change) {
     return std::ranges::any_of(newer.markers, [&](const icd::Marker& later) {
       if (later.action == icd::MarkerAction::DeleteAll) return true;
@@ -48,11 +48,11 @@ bool is_older_map(const Message& message, const Message& other) {
   return map != nullptr && other_map != nullptr && map->header().stamp < other_map->header().stamp;
 }
 
-bool says_all_of(const Message& newer, const RejectedMessage& older) {
+bool contains_all_of(const Message& newer, const RejectedMessage& older) {
   return newer.index() == older.message.index() &&
          std::visit(
              [&]<class Kind>(const Kind& message) {
-               return says_all(message, std::get<Kind>(older.message), older);
+               return contains_all(message, std::get<Kind>(older.message), older);
              },
              newer);
 }
@@ -68,7 +68,7 @@ void take_over(RejectedMessage& item, const RejectedMessage& older) {
 }  // namespace
 
 bool replaces(const Message& newer, const RejectedMessage& older) {
-  return says_all_of(newer, older) && !is_older_map(newer, older.message);
+  return contains_all_of(newer, older) && !is_older_map(newer, older.message);
 }
 
 std::vector<std::uint64_t> RejectedMessages::add(RejectedMessage item) {

@@ -38,7 +38,7 @@ std::vector<icd::GridBounds> OvertakenMaps::find_newer(const icd::MapUpdate& map
   const auto client = clients_.find(upload.address);
   if (client == clients_.end()) return newer;
   const Sender sender = Sender::from_map(map);
-  for (const Accepted& each : client->second) {
+  for (const AcceptedMap& each : client->second) {
     if (each.sender == sender && each.stamp > stamp_of(map.header()) && each.ended > upload.began)
       newer.push_back(each.bounds);
   }
@@ -46,26 +46,27 @@ std::vector<icd::GridBounds> OvertakenMaps::find_newer(const icd::MapUpdate& map
 }
 
 bool OvertakenMaps::must_wait(const Upload& upload) const {
-  return std::ranges::any_of(stored_, [&](const Stored& each) {
+  return std::ranges::any_of(stored_, [&](const StoredMap& each) {
     return each.upload.address == upload.address && (each.is_overtaken || each.upload.ended > upload.began);
   });
 }
 
 void OvertakenMaps::end(const Upload& upload) {
-  std::erase_if(stored_, [&](const Stored& each) { return each.upload.ended == upload.ended; });
+  std::erase_if(stored_, [&](const StoredMap& each) { return each.upload.ended == upload.ended; });
 }
 
 void OvertakenMaps::record(const icd::MapUpdate& map, const Upload& upload) {
   if (const auto client = clients_.find(upload.address); client != clients_.end()) {
-    std::erase_if(client->second,
-                  [&](const Accepted& each) { return upload.overlaps == 0 || each.ended < upload.overlaps; });
+    std::erase_if(client->second, [&](const AcceptedMap& each) {
+      return upload.overlaps == 0 || each.ended < upload.overlaps;
+    });
     if (client->second.empty()) clients_.erase(client);
   }
   if (upload.overlaps == 0) return;
   if (clients_.size() == kMostClients && !clients_.contains(upload.address)) return;
-  std::vector<Accepted>& its = clients_[upload.address];
+  std::vector<AcceptedMap>& its = clients_[upload.address];
   if (its.size() == kMostOfClient) its.erase(its.begin());
-  Accepted added{.sender = Sender::from_map(map), .stamp = stamp_of(map.header()), .ended = upload.ended};
+  AcceptedMap added{.sender = Sender::from_map(map), .stamp = stamp_of(map.header()), .ended = upload.ended};
   if (const auto* grid = std::get_if<icd::OccupancyGrid>(&map.msg))
     added.bounds = icd::GridBounds::from_grid(*grid);
   its.push_back(std::move(added));
@@ -166,11 +167,11 @@ StampShift::Address& StampShift::address_of(const std::string& address) {
   return its;
 }
 
-StampShift::Named StampShift::name_in(const Address& address, const Stamper& stamper) {
+StampShift::ClockKey StampShift::name_in(const Address& address, const Stamper& stamper) {
   constexpr std::size_t kShared = std::size(icd::kUris);
-  const Named own{stamper.uri, stamper.robot};
+  const ClockKey own{stamper.uri, stamper.robot};
   const bool has_room = address.clocks.size() + kShared < kMostOfAddress;
-  return has_room || address.clocks.contains(own) ? own : Named{stamper.uri, ""};
+  return has_room || address.clocks.contains(own) ? own : ClockKey{stamper.uri, ""};
 }
 
 StampShift::Clock* StampShift::find(const Stamper& stamper) {
@@ -187,7 +188,7 @@ bool StampShift::is_set_back(Clock& clock, icd::Stamp stamp, double now, const U
   if (stamp >= clock.latest || stamp < clock.latest - kOldest) return stamp < clock.latest;
   const auto& older = clock.older;
   if (!older || stamp < older->stamp || stamp - older->stamp > now - older->at + kJitter)
-    clock.older = Older{stamp, now, upload.ended};
+    clock.older = OlderStamp{stamp, now, upload.ended};
   // A slow upload was stamped long before now.
   return upload.began >= clock.older->ended && stamp - clock.older->stamp >= kSteady;
 }
@@ -276,7 +277,7 @@ std::optional<double> StampShift::sender_time(double now, double from, double un
   return earliest;
 }
 
-void StampShift::carry_on(const Stamper& stamper, const SenderClock& clock) {
+void StampShift::restore(const Stamper& stamper, const SenderClock& clock) {
   address_of(stamper.address).clocks[{stamper.uri, stamper.robot}] = Clock{clock};
 }
 

@@ -50,19 +50,19 @@ class OvertakenMaps {
   bool empty() const { return stored_.empty(); }
 
  private:
-  struct Accepted {
+  struct AcceptedMap {
     Sender sender;
     icd::Stamp stamp = 0;
     std::uint64_t ended = 0;
     icd::GridBounds bounds = {};
   };
-  struct Stored {
+  struct StoredMap {
     Upload upload;
     bool is_overtaken = false;
   };
 
-  std::map<std::string, std::vector<Accepted>> clients_;  // by address
-  std::vector<Stored> stored_;                            // now
+  std::map<std::string, std::vector<AcceptedMap>> clients_;  // by address
+  std::vector<StoredMap> stored_;                            // now
 };
 
 /// Rectangles of the cells of `older` that no newer grid covers. A cell is covered if its middle is
@@ -163,32 +163,33 @@ class StampShift {
   static constexpr double kSpeaks = 10;  // seconds
   std::optional<double> sender_time(double now, double from, double until) const;
   /// Adds a clock of an earlier process, as clocks() or take_changed() returned it.
-  void carry_on(const Stamper& stamper, const SenderClock& clock);
+  void restore(const Stamper& stamper, const SenderClock& clock);
   /// `stamp`: what an earlier process converted for the stamper.
   void restore_stamp(const Stamper& stamper, icd::Stamp stamp);
 
  private:
   /// An older stamp, and when it arrived.
-  struct Older {
+  struct OlderStamp {
     icd::Stamp stamp = 0;
     double at = 0;
     std::uint64_t ended = 0;  // Upload::ended
   };
   struct Clock : SenderClock {
-    std::optional<Older> older = {};  // since then, no stamp was the latest, and none went faster than time
-    SenderClock before = {};          // the last step; for uploads that had begun
-    std::uint64_t stepped = 0;        // Upload::ended of the message that showed it
+    std::optional<OlderStamp> older =
+        {};                     // since then, no stamp was the latest, and none went faster than time
+    SenderClock before = {};    // the last step; for uploads that had begun
+    std::uint64_t stepped = 0;  // Upload::ended of the message that showed it
     bool has_changed = false;
   };
-  using Named = std::pair<icd::Uri, std::string>;
+  using ClockKey = std::pair<icd::Uri, std::string>;
   struct Address {
-    std::map<Named, Clock> clocks;
+    std::map<ClockKey, Clock> clocks;
     std::uint64_t used = 0;  // the value of uses_ at the last use
   };
 
   Address& address_of(const std::string& address);
   /// The name of the stamper's own clock, or of the shared one.
-  static Named name_in(const Address& address, const Stamper& stamper);
+  static ClockKey name_in(const Address& address, const Stamper& stamper);
   /// Null if the stamper has no clock yet.
   Clock* find(const Stamper& stamper);
   /// `clock`: the stamper's, or null. Sets it if the first stamp creates the clock.

@@ -14,7 +14,7 @@ std::size_t StateQueue::unknown_in(const auto& poses) const {
 bool StateQueue::has_room_for(const icd::StateUpdate& update) const {
   const std::size_t unknown = unknown_in(update.poses);
   if (unknown == 0 || robots_.size() + unknown <= kMostRobots) return true;
-  const auto waiting = std::ranges::count_if(robots_, &Held::waits, &Robots::value_type::second);
+  const auto waiting = std::ranges::count_if(robots_, &HeldPose::is_pending, &Robots::value_type::second);
   return static_cast<std::size_t>(waiting) + unknown <= kMostRobots;
 }
 
@@ -29,10 +29,10 @@ std::vector<PostedPose> StateQueue::news_in(std::span<const PostedPose> poses) c
 
 void StateQueue::add(std::span<const PostedPose> news, Instant now) {
   if (news.empty()) return;
-  if (robots_.size() + unknown_in(news) > kMostRobots) forget_what_was_taken();
+  if (robots_.size() + unknown_in(news) > kMostRobots) forget_accepted();
   for (const PostedPose& newer : news) {
-    const auto [robot, is_new] = robots_.try_emplace(newer.name, Held{newer});
-    Held& held = robot->second;
+    const auto [robot, is_new] = robots_.try_emplace(newer.name, HeldPose{newer});
+    HeldPose& held = robot->second;
     held.posted = newer;
     if (is_new || !held.is_news) held.accepted = now;
     held.is_news = held.is_of_run = true;
@@ -40,14 +40,14 @@ void StateQueue::add(std::span<const PostedPose> news, Instant now) {
   }
 }
 
-void StateQueue::forget_what_was_taken() {
-  std::erase_if(robots_, [](const auto& robot) { return !robot.second.waits(); });
+void StateQueue::forget_accepted() {
+  std::erase_if(robots_, [](const auto& robot) { return !robot.second.is_pending(); });
 }
 
 void StateQueue::add_unless_known(const icd::StateUpdate& update, Instant now) {
   for (const icd::NamedPose& named : update.poses) {
-    const auto [robot, is_new] = robots_.try_emplace(named.name, Held{{named.name, named.pose}});
-    Held& held = robot->second;
+    const auto [robot, is_new] = robots_.try_emplace(named.name, HeldPose{{named.name, named.pose}});
+    HeldPose& held = robot->second;
     if (!is_new && !std::exchange(held.is_given_up, false)) continue;
     if (is_new || !held.is_news) held.accepted = now;
     held.is_news = true;
@@ -55,12 +55,12 @@ void StateQueue::add_unless_known(const icd::StateUpdate& update, Instant now) {
   }
 }
 
-std::optional<StateQueue::Next> StateQueue::next(Instant now) const {
-  std::optional<Next> next;
-  const auto rank = [now](const Next& one) { return std::pair(std::max(one.ready, now), one.accepted); };
+std::optional<StateQueue::NextState> StateQueue::next(Instant now) const {
+  std::optional<NextState> next;
+  const auto rank = [now](const NextState& one) { return std::pair(std::max(one.ready, now), one.accepted); };
   for (const auto& [name, held] : robots_) {
     if (!held.is_news) continue;
-    const Next its{held.ready(), held.accepted};
+    const NextState its{held.ready(), held.accepted};
     if (!next || rank(its) < rank(*next)) next = its;
   }
   return next;
@@ -70,18 +70,18 @@ std::optional<StateQueue::Next> StateQueue::next(Instant now) const {
 /// that repeat their pose, and last the robot that failed just now.
 StateQueue::Robots::iterator StateQueue::next_single(Instant now) {
   auto chosen = robots_.end();
-  const auto rank = [&](const Held& held) {
+  const auto rank = [&](const HeldPose& held) {
     return std::tuple(held.trial.steps_behind, !held.is_news, held.trial.failed.value_or(Instant{}));
   };
   for (auto each = robots_.begin(); each != robots_.end(); ++each) {
-    if (!each->second.apart || !each->second.goes() || each->second.ready() > now) continue;
+    if (!each->second.apart || !each->second.can_send() || each->second.ready() > now) continue;
     if (chosen == robots_.end() || rank(each->second) < rank(chosen->second)) chosen = each;
   }
   return chosen;
 }
 
 void StateQueue::include(QueuedState& taken, Robots::value_type& robot) {
-  Held& held = robot.second;
+  HeldPose& held = robot.second;
   const PostedPose& posted = held.posted;
   held.in_flight = held.is_news ? std::optional(held.accepted) : std::nullopt;
   if (held.is_news) taken.news.push_back(posted.to_named_pose());
@@ -104,7 +104,7 @@ std::optional<QueuedState> StateQueue::pop(Instant now) {
     include(taken, *apart);
   } else {
     for (auto& robot : robots_) {
-      if (together(robot) && robot.second.goes()) include(taken, robot);
+      if (together(robot) && robot.second.can_send()) include(taken, robot);
     }
   }
   for (auto& [name, held] : robots_) held.trial.steps_behind = false;
@@ -133,7 +133,7 @@ void StateQueue::on_passed(const QueuedState& state) {
   for (const icd::NamedPose& pose : state.update.poses) {
     const auto held = robots_.find(pose.name);
     if (held == robots_.end()) continue;
-    Held& its = held->second;
+    HeldPose& its = held->second;
     was_outage = was_outage || (its.trial.failures > 0 && its.trial.strikes == 0);
     its.is_given_up = false;
     its.in_flight.reset();
@@ -148,7 +148,7 @@ void StateQueue::on_passed(const QueuedState& state) {
 void StateQueue::give_up(const icd::RobotName& name, Instant now) {
   const auto robot = robots_.find(name);
   if (robot == robots_.end()) return;
-  Held& held = robot->second;
+  HeldPose& held = robot->second;
   held.apart = held.is_given_up = true;
   held.in_flight.reset();
   held.trial = {};
@@ -163,7 +163,7 @@ Trial* StateQueue::trial_of(const QueuedState& state) {
 
 std::optional<Instant> StateQueue::accepted_at(const icd::RobotName& name) const {
   const auto robot = robots_.find(name);
-  if (robot == robots_.end() || !robot->second.waits()) return std::nullopt;
+  if (robot == robots_.end() || !robot->second.is_pending()) return std::nullopt;
   return robot->second.in_flight.value_or(robot->second.accepted);
 }
 

@@ -60,18 +60,18 @@ class StateQueue {
   void add_unless_known(const icd::StateUpdate& update, Instant now);
 
   /// News, and when they may go.
-  struct Next {
+  struct NextState {
     Instant ready{};   // of a robot that does not rest: long ago
     Instant accepted;  // when the pose was accepted
   };
   /// Of the robot whose turn comes first: the oldest news, but robots that rest come last.
-  std::optional<Next> next(Instant now) const;
+  std::optional<NextState> next(Instant now) const;
   /// The newest poses of all robots that go together, or of one robot that goes apart. Nothing if there is no
   /// news, or only of robots that rest. Without `now`, no robot rests.
   std::optional<QueuedState> pop(Instant now = Instant::max());
   /// Drops robots without news, because another Command Post knows no robot. Call while no state is in
   /// flight.
-  void forget_what_was_taken();
+  void forget_accepted();
   /// Another run has begun. Queued poses are sent once, because they were posted before it; accepted poses
   /// are not sent again.
   void begin_run() {
@@ -101,9 +101,9 @@ class StateQueue {
   bool empty() const { return !next({}); }  // no news
 
  private:
-  struct Held {
-    bool waits() const { return is_news || in_flight; }
-    bool goes() const { return is_news || (is_of_run && !is_given_up); }
+  struct HeldPose {
+    bool is_pending() const { return is_news || in_flight; }
+    bool can_send() const { return is_news || (is_of_run && !is_given_up); }
     Instant ready() const { return apart ? trial.rests_until : Instant{}; }
     void join() { apart = false, trial = {}; }
 
@@ -116,7 +116,7 @@ class StateQueue {
     bool is_given_up = false;
     Trial trial{};
   };
-  using Robots = std::map<icd::RobotName, Held>;
+  using Robots = std::map<icd::RobotName, HeldPose>;
   std::size_t unknown_in(const auto& poses) const;
   Robots::iterator next_single(Instant now);
   void include(QueuedState& taken, Robots::value_type& robot);

@@ -21,7 +21,7 @@ bool fill_row(const Cells& all, const std::vector<Cells>& tiles, std::int64_t y)
 }
 
 /// Whether the grids within `all` have enough cells to fill it; with gaps, enough for kMostFilled.
-bool may_fill(const Cells& all, std::span<const Cells> grids, bool with_gaps) {
+bool can_fill(const Cells& all, std::span<const Cells> grids, bool with_gaps) {
   if (all.width > kMostStitchedCells / all.height) return false;
   std::int64_t most = 0;
   for (const Cells& grid : grids) {
@@ -78,12 +78,12 @@ bool fill(const Cells& all, std::vector<Cells> tiles) {
 Stitch stitch(std::span<const Cells> grids, const Known& known) {
   grids = grids.first(std::min(grids.size(), kMostStitched));
   Stitch best{{0}, grids.front()};
-  if (!may_fill(best.cells, grids, false)) return best;
+  if (!can_fill(best.cells, grids, false)) return best;
   if (auto with_those_within = filling(best.cells, grids, {})) best = std::move(*with_those_within);
   std::size_t tries = 0;
   for (std::size_t i = 0, in_vain = 0; in_vain < grids.size() && tries < kMostTries; ++i, ++in_vain) {
     const Cells all = bounding_box(best.cells, grids[i % grids.size()]);
-    if (all == best.cells || !may_fill(all, grids, known != nullptr)) continue;
+    if (all == best.cells || !can_fill(all, grids, known != nullptr)) continue;
     ++tries;
     if (auto larger = filling(all, grids, known)) {
       best = std::move(*larger);

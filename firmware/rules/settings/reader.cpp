@@ -57,7 +57,7 @@ void Reader::read_object(const Value& value, const Row& row, void* into, const s
     if (&row == &Robot::kRow && name == "voxel_metres") {  // of earlier versions; 0 was the default
       if (value_text(given) != "0") without_effect.push_back(join_path(path, name));
     } else if (member == row.members.end()) {
-      tell_unknown(name, row, path);
+      report_unknown(name, row, path);
     } else if (std::ranges::find(seen, name) != seen.end()) {
       errors.push_back({join_path(path, name), "given twice"});
     } else {
@@ -67,7 +67,7 @@ void Reader::read_object(const Value& value, const Row& row, void* into, const s
   }
   for (const Member& member : row.members) {
     if (std::ranges::find(seen, member.name) == seen.end())
-      tell_missing(member, into, join_path(path, member.name));
+      report_missing(member, into, join_path(path, member.name));
   }
 }
 
@@ -102,7 +102,7 @@ void Reader::read_list(const Value& value, const Member& member, void* list, con
   }
 }
 
-void Reader::tell_unknown(const std::string& name, const Row& row, const std::string& path) {
+void Reader::report_unknown(const std::string& name, const Row& row, const std::string& path) {
   if (passes_unknown) return passed_over.push_back(join_path(path, shown_name(name)));
   std::vector<std::string_view> known;
   known.reserve(row.members.size());
@@ -113,7 +113,7 @@ void Reader::tell_unknown(const std::string& name, const Row& row, const std::st
 }
 
 /// Names each required key at once, so that the user can write all of them.
-void Reader::tell_missing(const Member& member, void* into, const std::string& path) {
+void Reader::report_missing(const Member& member, void* into, const std::string& path) {
   if (!member.is_needed) return;
   if (member.kind->schema->row != nullptr) {
     read_object(Value{Value::Object{}}, *member.kind->schema->row, member.in(into), path);
@@ -159,14 +159,14 @@ Host host_of(const std::string& text) {
 }
 
 /// Whether `listen` receives traffic to `endpoint`, as far as the addresses show.
-bool comes_in_at(const Address& listen, const Address& endpoint) {
+bool can_receive(const Address& listen, const Address& endpoint) {
   if (listen == endpoint) return true;
   return listen.port == endpoint.port && host_of(listen.address).any && host_of(endpoint.address).loopback;
 }
 
 bool is_endpoint(const Address& listen, const Settings& settings) {
   const auto has = [&](const auto& post) {
-    return comes_in_at(listen, post.scoring) || comes_in_at(listen, post.mapping);
+    return can_receive(listen, post.scoring) || can_receive(listen, post.mapping);
   };
   return has(settings.command_post) || std::ranges::any_of(settings.courses, has);
 }

@@ -26,8 +26,8 @@ class Reader {
   void read_member(const codec::Value& value, const codec::Member& member, void* into,
                    const std::string& path);
   void read_list(const codec::Value& value, const codec::Member& member, void* list, const std::string& path);
-  void tell_unknown(const std::string& name, const codec::Row& row, const std::string& path);
-  void tell_missing(const codec::Member& member, void* into, const std::string& path);
+  void report_unknown(const std::string& name, const codec::Row& row, const std::string& path);
+  void report_missing(const codec::Member& member, void* into, const std::string& path);
 };
 
 /// The valid values in words: "1 to 65535", "a list of 1 to 16 items".

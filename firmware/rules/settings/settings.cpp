@@ -52,12 +52,12 @@ std::expected<Settings, std::vector<Error>> parse(const Value& root) {
   return read(reader, root);
 }
 
-std::expected<Saved, std::vector<Error>> parse_saved(std::string_view json) {
+std::expected<SavedSettings, std::vector<Error>> parse_saved(std::string_view json) {
   const auto root = ADIT_TRY(read_json(json));
   Reader reader;
   reader.passes_unknown = true;
   auto settings = ADIT_TRY(read(reader, root));
-  return Saved{std::move(settings), std::move(reader.passed_over)};
+  return SavedSettings{std::move(settings), std::move(reader.passed_over)};
 }
 
 std::vector<std::string_view> words(std::string_view text) {

@@ -185,11 +185,11 @@ std::expected<Settings, std::vector<Error>> parse(std::string_view json);
 std::expected<Settings, std::vector<Error>> parse(const codec::Value& root);
 
 /// Settings that Adit wrote, perhaps a later version before an update was reverted. Unknown keys are skipped.
-struct Saved {
+struct SavedSettings {
   Settings settings;
   std::vector<std::string> passed_over;  // paths of unknown keys
 };
-std::expected<Saved, std::vector<Error>> parse_saved(std::string_view json);
+std::expected<SavedSettings, std::vector<Error>> parse_saved(std::string_view json);
 
 /// The settings in effect: the endpoints of the course in use, and the robots' aliases in the rules. Requires
 /// valid robot names (icd::RobotName), which parse() ensures.

@@ -12,19 +12,19 @@ constexpr std::string_view kAbout = "about", kSettings = "settings", kLedger = "
 constexpr std::size_t kMostTokens = 256, kLongestHead = 128;
 
 constexpr codec::Member kAboutMembers[] = {
-    codec::member<&About::box>("box"),
-    codec::member<&About::name>("name"),
-    codec::member<&About::version>("version"),
-    codec::member<&About::at>("at"),
-    codec::member<&About::stamp>("stamp"),
-    codec::member<&About::rest_count>("rest_count"),
-    codec::member<&About::told_at>("told_at"),
-    codec::member<&About::stamps>("stamps"),
-    codec::member<&About::reports>("reports").from(0),
-    codec::member<&About::open>("open").from(0),
-    codec::member<&About::post>("post"),
-    codec::member<&About::run>("run"),
-    codec::member<&About::expected>("expected"),
+    codec::member<&ExportInfo::box>("box"),
+    codec::member<&ExportInfo::name>("name"),
+    codec::member<&ExportInfo::version>("version"),
+    codec::member<&ExportInfo::at>("at"),
+    codec::member<&ExportInfo::stamp>("stamp"),
+    codec::member<&ExportInfo::rest_count>("rest_count"),
+    codec::member<&ExportInfo::told_at>("told_at"),
+    codec::member<&ExportInfo::stamps>("stamps"),
+    codec::member<&ExportInfo::reports>("reports").from(0),
+    codec::member<&ExportInfo::open>("open").from(0),
+    codec::member<&ExportInfo::post>("post"),
+    codec::member<&ExportInfo::run>("run"),
+    codec::member<&ExportInfo::expected>("expected"),
 };
 
 void add(std::string& text, std::string_view name, std::string_view bytes) {
@@ -56,7 +56,7 @@ std::unexpected<std::string> damage_error(const std::string& why) {
 }
 
 /// Reads each part once.
-class Reading {
+class ContentReader {
  public:
   std::optional<std::string> read_part(const Part& part) {
     if (!seen_.emplace(std::string(part.name), true).second) return sentence(part, "is given twice");
@@ -82,7 +82,7 @@ class Reading {
     return std::nullopt;
   }
   std::optional<std::string> read_about(const Part& part) {
-    auto about = codec::read_file<About>(part.bytes);
+    auto about = codec::read_file<ExportInfo>(part.bytes);
     if (!about) return sentence(part, about.error());
     content_.about = *std::move(about);
     return std::nullopt;
@@ -102,7 +102,7 @@ class Reading {
 
 }  // namespace
 
-constexpr codec::Row About::kRow = codec::complete<About>({"", kAboutMembers});
+constexpr codec::Row ExportInfo::kRow = codec::complete<ExportInfo>({"", kAboutMembers});
 
 std::string write(const Content& content) {
   std::string text;
@@ -115,7 +115,7 @@ std::string write(const Content& content) {
 }
 
 std::expected<Content, std::string> read(std::string_view text) {
-  Reading reading;
+  ContentReader reading;
   while (!text.empty()) {
     const auto part = take_part(text);
     if (!part) return damage_error("the end of a part is missing");

@@ -14,7 +14,7 @@
 namespace adit::spare {
 
 /// The box that made an export, and its state at the standby.
-struct About {
+struct ExportInfo {
   std::string box = "";      // number that the box drew once, in hexadecimal digits
   std::string name = "";     // its address and port for the team
   std::string version = "";  // of Adit
@@ -34,7 +34,7 @@ struct About {
 
 /// Data that a box hands to its spare.
 struct Content {
-  About about;
+  ExportInfo about;
   std::string settings;                            // the settings file
   std::map<std::string, icd::BearerToken> tokens;  // by name
   std::string ledger;                              // Ledger::copy()

@@ -91,7 +91,7 @@ std::expected<std::string, std::string> seal(std::string_view content, std::stri
   return file;
 }
 
-std::string not_an_export(std::string_view file) {
+std::string export_error(std::string_view file) {
   if (file.size() < kExportHead || !file.starts_with(kMagic)) return "the file is not an export from Adit";
   const auto version = static_cast<std::uint8_t>(file[kMagic.size()]);
   if (version > kVersion)
@@ -102,7 +102,7 @@ std::string not_an_export(std::string_view file) {
 }
 
 std::expected<std::string, std::string> unseal(std::string_view file, std::string_view code) {
-  if (std::string why = not_an_export(file); !why.empty()) return std::unexpected(std::move(why));
+  if (std::string why = export_error(file); !why.empty()) return std::unexpected(std::move(why));
   if (file.size() > kLargestExport) return std::unexpected("the file is larger than an export may be");
   if (file.size() < kBefore + kTag) return std::unexpected("the export is incomplete");
   const auto* const data = bytes(file);

@@ -48,6 +48,6 @@ std::expected<std::string, std::string> unseal(std::string_view file, std::strin
 
 /// Why a file is not a readable export, or "". `file`: at least its first kExportHead bytes, or the whole of
 /// a shorter file.
-std::string not_an_export(std::string_view file);
+std::string export_error(std::string_view file);
 
 }  // namespace adit::spare

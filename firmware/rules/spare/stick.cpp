@@ -51,14 +51,14 @@ bool is_file_name(std::string_view name) {
          std::ranges::all_of(name, [](char each) { return each >= ' ' && each <= '~' && each != '/'; });
 }
 
-NamedFor named_for(std::string_view name) {
+ExportName named_for(std::string_view name) {
   if (!is_file_name(name) || !name.starts_with(kBegin)) return {};
   name.remove_prefix(kBegin.size());
   name.remove_suffix(std::min(kEnd.size(), name.size()));
   const std::size_t hyphen = name.rfind('-');
   if (hyphen == std::string_view::npos || hyphen == 0) return {};
   const auto at = time_in(name.substr(hyphen + 1));
-  return at ? NamedFor{.box = std::string(name.substr(0, hyphen)), .at = at} : NamedFor{};
+  return at ? ExportName{.box = std::string(name.substr(0, hyphen)), .at = at} : ExportName{};
 }
 
 bool is_before(std::string_view left, std::string_view right) {
@@ -82,8 +82,8 @@ std::expected<Medium, std::string> medium_for(std::span<const Medium> media, std
   return *best;
 }
 
-static constexpr std::string_view kWhatWords[] = {"write", "take"};  // in the order of StickRequest::What
-static constexpr auto& words_of(StickRequest::What /*of*/) {
+static constexpr std::string_view kWhatWords[] = {"write", "take"};  // in the order of StickRequest::Command
+static constexpr auto& words_of(StickRequest::Command /*of*/) {
   return kWhatWords;
 }
 

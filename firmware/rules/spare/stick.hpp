@@ -22,12 +22,12 @@ std::string file_name(std::string_view box, double at);
 bool is_file_name(std::string_view name);
 
 /// The parts of a name, as far as present.
-struct NamedFor {
+struct ExportName {
   std::string box = "";
   std::optional<double> at = std::nullopt;
-  friend bool operator==(const NamedFor&, const NamedFor&) = default;
+  friend bool operator==(const ExportName&, const ExportName&) = default;
 };
-NamedFor named_for(std::string_view name);
+ExportName named_for(std::string_view name);
 
 /// Order of display: names with a time first, then the latest first.
 bool is_before(std::string_view left, std::string_view right);
@@ -63,9 +63,9 @@ inline constexpr const char* kForStickFile = "stick.adit-spare";
 inline constexpr const char* kFromStickFile = "export.adit-spare";
 
 struct StickRequest {
-  enum class What : std::uint8_t { Write, Take };
+  enum class Command : std::uint8_t { Write, Take };
   std::string nonce = "";  // codec::is_nonce()
-  What what = What::Take;
+  Command what = Command::Take;
   std::string name = "";  // is_file_name(): the file on the stick
   static const codec::Row kRow;
 };

@@ -109,7 +109,8 @@ constexpr std::pair<std::string_view, std::string_view> kMeanings[] = {
 
 /// Reads one of RAUC's slots, an object with one member, the slot's name. `next`: name of the slot to start
 /// next.
-void take_slot(const Value& slot, const std::string& booted, const std::string& next, Running& running) {
+void take_slot(const Value& slot, const std::string& booted, const std::string& next,
+               RunningSystem& running) {
   const auto* named = std::get_if<Value::Object>(&slot.is);
   if (named == nullptr || named->size() != 1) return;
   codec::Reading reading;
@@ -162,14 +163,14 @@ std::expected<Bundle, std::string> read_info(std::string_view json) {
   return bundle;
 }
 
-std::expected<Running, std::string> read_status(std::string_view json) {
+std::expected<RunningSystem, std::string> read_status(std::string_view json) {
   const auto root = codec::parse_json(json);
   if (!root) return std::unexpected("RAUC's status is not JSON: " + root.error());
   codec::Reading reading;
   const Field field(*root, reading);
   const Field compatible = field.member("compatible"), booted = field.member("booted"),
               slots = field.member("slots");
-  Running running{.compatible = std::string(compatible.text()), .slot = std::string(booted.text())};
+  RunningSystem running{.compatible = std::string(compatible.text()), .slot = std::string(booted.text())};
   slots.size();
   const Field primary = field.member("boot_primary");  // absent if the boot loader's environment is invalid
   const std::string next(primary.is_absent() ? "" : primary.text());
@@ -181,7 +182,7 @@ std::expected<Running, std::string> read_status(std::string_view json) {
   return running;
 }
 
-std::string not_a_bundle(std::span<const std::uint8_t> head, std::uint64_t size) {
+std::string bundle_error(std::span<const std::uint8_t> head, std::uint64_t size) {
   constexpr std::string_view kMagic = "hsqs";
   constexpr std::size_t kBytesUsed = 40;  // offset of the size in a squashfs, little-endian
   const bool squashfs = head.size() >= kBundleHead && std::equal(kMagic.begin(), kMagic.end(), head.begin());
@@ -215,7 +216,7 @@ Fault fault_in(std::string_view out, std::string_view err) {
   return {busy ? Fault::Kind::Busy : Fault::Kind::Other, explain_fault(fault)};
 }
 
-std::string hindrance(const Bundle& bundle, const Running& running, bool again) {
+std::string refusal_reason(const Bundle& bundle, const RunningSystem& running, bool again) {
   if (bundle.compatible != running.compatible) {
     return icd::sentence("the update is for another board: ", icd::quote_text(bundle.compatible),
                          ", but this board is ", icd::quote_text(running.compatible));

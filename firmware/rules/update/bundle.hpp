@@ -52,7 +52,7 @@ struct Bundle {
 };
 
 /// The running system.
-struct Running {
+struct RunningSystem {
   std::string compatible = "";
   std::string version = "";
   std::string slot = "";    // boot loader's name: "A"
@@ -60,19 +60,19 @@ struct Running {
   bool other_next = false;  // the boot loader starts `other` next; not stored
   bool other_good = false;  // `other` has tries left; not stored
   static const codec::Row kRow;
-  friend bool operator==(const Running&, const Running&) = default;
+  friend bool operator==(const RunningSystem&, const RunningSystem&) = default;
 };
 
 /// Read the output of `rauc info --output-format=json` and `rauc status --output-format=json`. RAUC does not
-/// know Running::version.
+/// know RunningSystem::version.
 std::expected<Bundle, std::string> read_info(std::string_view json);
-std::expected<Running, std::string> read_status(std::string_view json);
+std::expected<RunningSystem, std::string> read_status(std::string_view json);
 
-/// Bytes that not_a_bundle() reads.
+/// Bytes that bundle_error() reads.
 inline constexpr std::size_t kBundleHead = 48;
 /// Why a file of `size` bytes with these first kBundleHead bytes (or all, if shorter) cannot be a bundle, or
 /// "". A bundle is a squashfs (Documentation/filesystems/squashfs.rst) followed by its signature.
-std::string not_a_bundle(std::span<const std::uint8_t> head, std::uint64_t size);
+std::string bundle_error(std::span<const std::uint8_t> head, std::uint64_t size);
 
 /// The percentage in a line of `rauc install --progress`: " 40% Verifying signature done."
 std::optional<int> percent_in(std::string_view line);
@@ -91,6 +91,6 @@ struct Fault {
 Fault fault_in(std::string_view out, std::string_view err);
 
 /// Why the bundle must not be installed, or "". `again`: allows the running version.
-std::string hindrance(const Bundle& bundle, const Running& running, bool again);
+std::string refusal_reason(const Bundle& bundle, const RunningSystem& running, bool again);
 
 }  // namespace adit::update

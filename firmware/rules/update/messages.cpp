@@ -8,25 +8,26 @@ namespace {
 
 /// Whether RAUC may have finished writing. RAUC continues if adit-update is killed, and a power cut may lose
 /// its answer. A slot that the boot loader left was complete.
-bool may_be_whole(Stage stage) {
+bool can_be_complete(Stage stage) {
   return stage != Stage::None && stage != Stage::Good;
 }
 
 /// RAUC makes the slot the next one only after it is complete.
-bool waits_for_a_restart(const LastUpdate& last_update, const Running& running, const std::string& boot) {
-  return may_be_whole(last_update.stage) && last_update.boot == boot && last_update.slot == running.other &&
-         running.other_next;
+bool waits_for_a_restart(const LastUpdate& last_update, const RunningSystem& running,
+                         const std::string& boot) {
+  return can_be_complete(last_update.stage) && last_update.boot == boot &&
+         last_update.slot == running.other && running.other_next;
 }
 
 }  // namespace
 
-Proven proven_now(Proven before, const Running& running, bool trial) {
+ProvenSlot proven_now(ProvenSlot before, const RunningSystem& running, bool trial) {
   const bool another = !before.slot.empty() && before.slot != running.slot;
   if (another && !trial) return before;
   return {running.slot, running.version};
 }
 
-std::string stray(const Proven& proven, const Running& running, bool trial) {
+std::string slot_warning(const ProvenSlot& proven, const RunningSystem& running, bool trial) {
   if (proven.slot.empty() || proven.slot == running.slot || trial) return "";
   const char* why =
       running.other_good
@@ -37,13 +38,13 @@ std::string stray(const Proven& proven, const Running& running, bool trial) {
                        proven.slot, " with ", proven.version, ", ", why);
 }
 
-std::string stray_if_unknown(const Running& running, bool trial, std::string_view why) {
+std::string stray_if_unknown(const RunningSystem& running, bool trial, std::string_view why) {
   if (trial) return "";
   return icd::sentence("slot ", running.slot, " is running, with ", running.version,
                        ", and may not be the last good one: ", why);
 }
 
-LastUpdate settle_update(LastUpdate last_update, const Running& running, const std::string& boot) {
+LastUpdate settle_update(LastUpdate last_update, const RunningSystem& running, const std::string& boot) {
   if (on_trial(last_update, running, boot) || waits_for_a_restart(last_update, running, boot)) {
     last_update.stage = Stage::Installed;
     last_update.why.clear();
@@ -59,14 +60,14 @@ LastUpdate settle_update(LastUpdate last_update, const Running& running, const s
   return last_update;
 }
 
-bool on_trial(const LastUpdate& last_update, const Running& running, const std::string& boot) {
-  return may_be_whole(last_update.stage) && last_update.boot != boot && last_update.slot == running.slot &&
+bool on_trial(const LastUpdate& last_update, const RunningSystem& running, const std::string& boot) {
+  return can_be_complete(last_update.stage) && last_update.boot != boot && last_update.slot == running.slot &&
          last_update.version == running.version;
 }
 
 static constexpr std::string_view kWhatWords[] = {"install", "stick", "restart", "back",
-                                                  "stay"};  // in the order of Request::What
-static constexpr auto& words_of(Request::What /*of*/) {
+                                                  "stay"};  // in the order of Request::Command
+static constexpr auto& words_of(Request::Command /*of*/) {
   return kWhatWords;
 }
 
@@ -82,10 +83,10 @@ constexpr Member kRequestMembers[] = {
     member<&Request::again>("again"),
 };
 constexpr Member kRunningMembers[] = {
-    member<&Running::compatible>("compatible"),
-    member<&Running::version>("version"),
-    member<&Running::slot>("slot"),
-    member<&Running::other>("other"),
+    member<&RunningSystem::compatible>("compatible"),
+    member<&RunningSystem::version>("version"),
+    member<&RunningSystem::slot>("slot"),
+    member<&RunningSystem::other>("other"),
 };
 constexpr Member kOfferMembers[] = {
     member<&Offer::name>("name"),
@@ -97,8 +98,8 @@ constexpr Member kLastUpdateMembers[] = {
     member<&LastUpdate::why>("why"),
 };
 constexpr Member kProvenMembers[] = {
-    member<&Proven::slot>("slot"),
-    member<&Proven::version>("version"),
+    member<&ProvenSlot::slot>("slot"),
+    member<&ProvenSlot::version>("version"),
 };
 constexpr Member kStatusMembers[] = {
     member<&Status::trouble>("trouble"),
@@ -117,10 +118,10 @@ constexpr Member kStatusMembers[] = {
 }  // namespace
 
 constexpr Row Request::kRow = codec::complete<Request>({"", kRequestMembers});
-constexpr Row Running::kRow = codec::complete<Running, 2>({"", kRunningMembers});
+constexpr Row RunningSystem::kRow = codec::complete<RunningSystem, 2>({"", kRunningMembers});
 constexpr Row Offer::kRow = codec::complete<Offer>({"", kOfferMembers});
 constexpr Row LastUpdate::kRow = codec::complete<LastUpdate>({"", kLastUpdateMembers});
-constexpr Row Proven::kRow = codec::complete<Proven>({"", kProvenMembers});
+constexpr Row ProvenSlot::kRow = codec::complete<ProvenSlot>({"", kProvenMembers});
 constexpr Row Status::kRow = codec::complete<Status>({"", kStatusMembers});
 
 }  // namespace adit::update

@@ -13,23 +13,23 @@ namespace adit::update {
 /// The slot that was healthy last and is to stay, stored across boots. Successful updates and the operator
 /// change it; the boot loader, which changes slots silently, does not. It is deleted before that slot is
 /// written.
-struct Proven {
+struct ProvenSlot {
   std::string slot = "";  // "": not known yet
   std::string version = "";
   static const codec::Row kRow;
-  friend bool operator==(const Proven&, const Proven&) = default;
+  friend bool operator==(const ProvenSlot&, const ProvenSlot&) = default;
 };
 
 /// The proven slot after the running one was found good. Another slot than the proven one replaces it only if
 /// it was on `trial`.
-Proven proven_now(Proven before, const Running& running, bool trial);
+ProvenSlot proven_now(ProvenSlot before, const RunningSystem& running, bool trial);
 
 /// Returns a sentence with the reason if an unexpected slot runs. "": the proven slot runs or is unknown, or
 /// the running slot is on `trial`.
-std::string stray(const Proven& proven, const Running& running, bool trial);
+std::string slot_warning(const ProvenSlot& proven, const RunningSystem& running, bool trial);
 /// The same if the proven slot cannot be read; `why` says so.
-std::string stray_if_unknown(const Running& running, bool trial, std::string_view why);
-/// Why go_back() and stay() are rejected without a stray.
+std::string stray_if_unknown(const RunningSystem& running, bool trial, std::string_view why);
+/// Why restart_proven_slot() and keep_running_slot() are rejected without a stray.
 inline constexpr std::string_view kNoStray = "no unexpected slot is running";
 
 /// State of the last update. An installed update is on trial until it was healthy once.
@@ -64,12 +64,12 @@ struct LastUpdate {
 };
 
 /// Updates the stage at a start of the program, in boot `boot`.
-LastUpdate settle_update(LastUpdate last_update, const Running& running, const std::string& boot);
+LastUpdate settle_update(LastUpdate last_update, const RunningSystem& running, const std::string& boot);
 
 /// Whether the running slot is the last update and has not been healthy yet. The known end of the writing
 /// does not matter, because an incomplete slot does not start. If the slot has another version, the update
 /// was never written. A slot that was left and runs again is on trial again.
-bool on_trial(const LastUpdate& last_update, const Running& running, const std::string& boot);
+bool on_trial(const LastUpdate& last_update, const RunningSystem& running, const std::string& boot);
 
 }  // namespace adit::update
 
@@ -90,7 +90,7 @@ inline constexpr const char* kProvenFile = "proven.json";
 inline constexpr std::uint64_t kLargestBundle = 256U << 20;
 
 struct Request {
-  enum class What : std::uint8_t {
+  enum class Command : std::uint8_t {
     Install,
     Stick,
     Restart,
@@ -98,7 +98,7 @@ struct Request {
     Stay,  // the running slot becomes the proven one
   };
   std::string nonce = "";  // codec::is_nonce()
-  What what = What::Restart;
+  Command what = Command::Restart;
   bool again = false;  // Install, Stick: even if that version runs
   static const codec::Row kRow;
 };
@@ -113,14 +113,14 @@ struct Offer {
 
 struct Status {
   std::string trouble = "";  // why updates are impossible here, or ""
-  Running running = {};
+  RunningSystem running = {};
   std::string nonce = "";            // of the last request that was read
   std::string refusal = "";          // why that request failed; "": done or in progress
   std::string doing = "";            // "", "checking", "installing", "restarting"
   std::optional<int> progress = {};  // per cent of "installing"
   LastUpdate last = {};
   bool trial = false;      // on_trial()
-  std::string stray = "";  // stray()
+  std::string stray = "";  // slot_warning()
   std::optional<Offer> stick = {};
   std::string stick_trouble = "";  // why the stick's files cannot be installed, or ""
   bool names(std::string_view request) const { return nonce == request; }

@@ -64,7 +64,7 @@ void World::transmit(const Report& report) {
   if (!is_anybody_there()) {
     later(between(0, 3), [this] {
       busy_ = false;
-      reports_->never_left("nobody is there", time());
+      reports_->on_never_sent("nobody is there", time());
     });
     return;
   }
@@ -82,7 +82,7 @@ void World::transmit(const Report& report) {
   } else if (falls(trouble_.never_left)) {
     later(between(0, 3), [this] {
       busy_ = false;
-      reports_->never_left("no way", time());
+      reports_->on_never_sent("no way", time());
     });
   } else if (falls(trouble_.throttled)) {
     answer(kRoundTrip, {429, "application/json", "\"too many\""});
@@ -112,7 +112,7 @@ void World::ask() {
                                                                : NoStatus::Other;
     later(between(0, 3), [this, why] {
       busy_ = false;
-      reports_->status_failed(why, time());
+      reports_->on_status_failed(why, time());
     });
     return;
   }
@@ -120,7 +120,7 @@ void World::ask() {
     later(kRoundTrip / 2, [this, asked, status = post().status(now_)] {
       busy_ = false;
       tell_story(icd::sentence("status: ", status.remaining_reports, " left, score ", status.score));
-      reports_->status_heard(status, asked, time());
+      reports_->on_status(status, asked, time());
     });
   });
 }

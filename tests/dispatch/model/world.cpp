@@ -105,7 +105,7 @@ bool World::write(std::span<const Report> steps, const Run* run, Flush flush) {
   return true;
 }
 
-void World::tell(ClientId client, const ClientAnswer& answer, const Report& report) {
+void World::answer_client(ClientId client, const ClientAnswer& answer, const Report& report) {
   if (answer.number != 0 && !disk_.content().reports.contains(answer.number)) {
     broken_.push_back(icd::sentence("report ", answer.number, " was called kept, and was not"));
   }

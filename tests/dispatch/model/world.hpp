@@ -90,7 +90,7 @@ class World final : public Output {
 
   // Output.
   bool write(std::span<const Report> steps, const Run* run, Flush flush) override;
-  void tell(ClientId client, const ClientAnswer& answer, const Report& report) override;
+  void answer_client(ClientId client, const ClientAnswer& answer, const Report& report) override;
 
   // Time.
   void later(Seconds delay, std::function<void()> happen, bool of_process = true);

@@ -259,11 +259,11 @@ std::string lower(std::string text) {
 }
 
 bool is_artifact_type(std::string_view type) {
-  return std::ranges::any_of(kArtifactTypes,
-                             [type](std::string_view known) { return icd::same_but_for_case(known, type); });
+  return std::ranges::any_of(
+      kArtifactTypes, [type](std::string_view known) { return icd::equals_ignoring_case(known, type); });
 }
 
-std::string tame(std::string_view text) {
+std::string sanitize(std::string_view text) {
   constexpr std::size_t longest = 32;
   std::string tamed(text.substr(0, longest));
   std::ranges::replace_if(tamed, std::not_fn(is_word_character), '_');

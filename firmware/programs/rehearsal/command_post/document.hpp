@@ -94,7 +94,7 @@ class Findings {
   const std::vector<Finding>& all() const { return all_; }
 
   /// The first finding for which a Command Post of that manner rejects the message; null: it accepts it.
-  const Finding* decisive(Manner manner) const {
+  const Finding* first_rejected(Manner manner) const {
     for (const Finding& finding : all_) {
       if (decides(finding, manner)) return &finding;
     }
@@ -114,7 +114,7 @@ class Findings {
   void add(Finding finding) {
     if (finding.sentence.size() > kLongest) finding.sentence.resize(kLongest);  // it may quote the sender
     const auto is_first = [&](Manner manner) {
-      return decides(finding, manner) && decisive(manner) == nullptr;
+      return decides(finding, manner) && first_rejected(manner) == nullptr;
     };
     // A finding that decides must not be lost behind many that do not.
     if (all_.size() < kMost || is_first(Manner::Strict) || is_first(Manner::AsMeasured)) {
@@ -178,7 +178,7 @@ std::string lower(std::string text);
 
 /// `text` with all but letters, digits and underscores made underscores, at most 32 characters: safe as part
 /// of a file's name and as a word of a PCD header.
-std::string tame(std::string_view text);
+std::string sanitize(std::string_view text);
 
 /// Whether `name` is one that a robot may have: 1 to 10 letters, digits and underscores (ICD 2).
 bool is_robot_name(std::string_view name);

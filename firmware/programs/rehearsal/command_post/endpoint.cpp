@@ -17,11 +17,11 @@ std::string_view path_of(std::string_view target) {
 
 bool RateLimit::is_too_soon(const Request& request) {
   const std::lock_guard lock(mutex_);
-  const double tolerance = counted_ == Counted::Decoded ? 1 : 0.95;
+  const double tolerance = counted_ == RateBasis::Decoded ? 1 : 0.95;
   const Clock::time_point now = Clock::now();
-  const Clock::time_point comes = counted_ == Counted::LastBytes ? request.whole
-                                  : counted_ == Counted::Decoded ? now
-                                                                 : request.at;
+  const Clock::time_point comes = counted_ == RateBasis::LastBytes ? request.whole
+                                  : counted_ == RateBasis::Decoded ? now
+                                                                   : request.at;
   if (hz_ > 0 && last_ && comes - *last_ < std::chrono::duration<double>(tolerance / hz_)) return true;
   count(request, now);
   return false;
@@ -33,9 +33,9 @@ void RateLimit::count(const Request& request) {
 }
 
 void RateLimit::count(const Request& request, Clock::time_point now) {
-  const Clock::time_point counts = counted_ == Counted::Starts      ? request.at
-                                   : counted_ == Counted::LastBytes ? request.whole
-                                                                    : now;
+  const Clock::time_point counts = counted_ == RateBasis::Starts      ? request.at
+                                   : counted_ == RateBasis::LastBytes ? request.whole
+                                                                      : now;
   last_ = last_ ? std::max(*last_, counts) : counts;
 }
 
@@ -62,7 +62,7 @@ void check_entry(const Request& request, std::span<const Function> functions, co
 bool admit(const Request& request, std::span<const Function> functions, const std::string& token,
            RateLimit* limit, Judgement& judgement) {
   check_entry(request, functions, token, judgement.findings);
-  const Finding* const finding = judgement.findings.decisive(Manner::Strict);
+  const Finding* const finding = judgement.findings.first_rejected(Manner::Strict);
   if (finding == nullptr || finding->status != 404) judgement.uri = request.path;
   if (finding == nullptr && !limit->is_too_soon(request)) return true;
   judgement.outcome = finding != nullptr ? answer_refusal(*finding) : answer_refusal(429, kTooManyRequests);

@@ -52,7 +52,7 @@ struct Answer {
 };
 
 /// What happens to the connection after the answer, if any.
-enum class After {
+enum class ConnectionAction {
   KeepOpen,
   Close,                    // saying so (Connection: close)
   CloseThoughPromisingNot,  // as the measured mapping server does after a 4xx
@@ -70,7 +70,7 @@ struct Outcome {
   };
   Kind kind = Kind::Answered;
   Answer answer = {};
-  After after = After::KeepOpen;
+  ConnectionAction after = ConnectionAction::KeepOpen;
   std::string bytes = {};
   std::chrono::milliseconds delay{0};
   std::function<Outcome()> then = {};  // called while the request still is
@@ -80,7 +80,7 @@ struct Outcome {
 std::string_view path_of(std::string_view target);
 
 /// The interval between two requests that a rate limit measures.
-enum class Counted : std::uint8_t {
+enum class RateBasis : std::uint8_t {
   Starts,     // from header to header
   LastBytes,  // from last byte to last byte
   Answers,    // from when the one was judged, to be answered, to the header of the next
@@ -91,7 +91,7 @@ enum class Counted : std::uint8_t {
 /// the last one counted is too many, as measured 100 %. 0 Hz: no limit. Safe for use by several threads.
 class RateLimit {
  public:
-  explicit RateLimit(double hz, Counted counted = Counted::Starts) : hz_(hz), counted_(counted) {}
+  explicit RateLimit(double hz, RateBasis counted = RateBasis::Starts) : hz_(hz), counted_(counted) {}
 
   /// Whether the request, which was decoded now, is too many. If it is not, it counts.
   bool is_too_soon(const Request& request);
@@ -102,7 +102,7 @@ class RateLimit {
   void count(const Request& request, Clock::time_point now);
 
   const double hz_;
-  const Counted counted_;
+  const RateBasis counted_;
   std::mutex mutex_;
   std::optional<Clock::time_point> last_;
 };
@@ -207,6 +207,6 @@ inline constexpr const char* kNoAuthority = "<ipaddress>:<port>";
 /// The same for mapping, the ICD's section 6. At most `hz` requests a second for each URI; as measured,
 /// clouds of all robots together. Without `hz` 1. `counted`: absent: by the manner.
 std::unique_ptr<Endpoint> mapping_endpoint(Manner manner, std::string token, std::optional<double> hz,
-                                           std::optional<Counted> counted);
+                                           std::optional<RateBasis> counted);
 
 }  // namespace adit::rehearsal

@@ -12,7 +12,7 @@
 namespace adit::rehearsal {
 
 /// A request whose answer is to be spoiled.
-struct Spoilt {
+struct SpoiledRequest {
   Aim aim;
   Manner manner;
   Outcome outcome;  // as it was judged; if it was not, the last good answer to its aim
@@ -21,7 +21,7 @@ struct Spoilt {
 struct Effect {
   std::string_view word;
   bool records;  // the request is judged
-  Outcome (*outcome_of)(const Spoilt& spoilt);
+  Outcome (*outcome_of)(const SpoiledRequest& spoilt);
 };
 
 namespace {
@@ -34,7 +34,7 @@ constexpr std::string_view kServerError = "Server Error (500)";
 /// As a captive portal says it, or a server that is none of the ICD's.
 Outcome portal(int status) {
   Outcome outcome = page(status, "Log in to the network");
-  outcome.after = After::Close;
+  outcome.after = ConnectionAction::Close;
   if (status == 302) outcome.answer.headers.emplace_back("Location", "http://192.0.2.1/login");
   return outcome;
 }
@@ -46,13 +46,13 @@ std::string repeat(std::string_view text, std::size_t bytes) {
 }
 
 /// 401 and 429, as the endpoint itself says them.
-Outcome refusal(int status, const Spoilt& spoilt) {
+Outcome refusal(int status, const SpoiledRequest& spoilt) {
   const bool unauthorized = status == 401;
   if (spoilt.manner == Manner::Strict)
     return answer_refusal(status, unauthorized ? kWrongToken : kTooManyRequests);
   if (spoilt.aim == Aim::Mapping) {
     Outcome outcome = answer_refusal(status, unauthorized ? kWrongToken : kTooManyClouds);
-    outcome.after = After::CloseThoughPromisingNot;
+    outcome.after = ConnectionAction::CloseThoughPromisingNot;
     return outcome;
   }
   Outcome outcome = answer_with_detail(status, unauthorized ? kInvalidToken : kThrottled);
@@ -61,11 +61,11 @@ Outcome refusal(int status, const Spoilt& spoilt) {
 }
 
 /// These bytes and no more; then the connection ends.
-Outcome broken(std::string bytes, After after = After::Close) {
+Outcome broken(std::string bytes, ConnectionAction after = ConnectionAction::Close) {
   return {.kind = Outcome::Kind::Breaks, .after = after, .bytes = std::move(bytes)};
 }
 
-Outcome half(const Spoilt& spoilt) {
+Outcome half(const SpoiledRequest& spoilt) {
   std::string bytes = bytes_of(spoilt.outcome, false, std::chrono::system_clock::now());
   bytes.resize(bytes.size() / 2);
   return broken(std::move(bytes));
@@ -79,14 +79,14 @@ Outcome json_with_tail(const std::string& bytes) {
   return broken(std::string(kOkLine).append(kJsonType).append(bytes));
 }
 
-using In = const Spoilt&;
+using In = const SpoiledRequest&;
 
 constexpr auto kEffects = std::to_array<Effect>({
     {"drop", false, [](In) { return broken(""); }},
     {"record-then-drop", true, [](In) { return broken(""); }},
     {"half-answer", true, half},
-    {"reset", true, [](In) { return broken("", After::Reset); }},
-    {"reset-unrecorded", false, [](In) { return broken("", After::Reset); }},
+    {"reset", true, [](In) { return broken("", ConnectionAction::Reset); }},
+    {"reset-unrecorded", false, [](In) { return broken("", ConnectionAction::Reset); }},
     {"garbage", true, [](In) { return broken(std::string(kGarbage)); }},
     {"401", false, [](In spoilt) { return refusal(401, spoilt); }},
     {"429", false, [](In spoilt) { return refusal(429, spoilt); }},
@@ -112,7 +112,7 @@ constexpr auto kEffects = std::to_array<Effect>({
 });
 
 /// Calls `change` with that member of the answer's body, if there is one.
-void misstate(Answer& answer, const char* member, const std::function<void(OrderedJson&)>& change) {
+void change_member(Answer& answer, const char* member, const std::function<void(OrderedJson&)>& change) {
   OrderedJson body = OrderedJson::parse(answer.body, nullptr, false);
   const auto shown = body.is_object() ? body.find(member) : body.end();
   if (shown == body.end()) return;
@@ -232,7 +232,7 @@ std::unexpected<std::string> no_such_aim(std::string_view name) {
 }
 
 /// Whether the fault may happen to the request of that body: one of its robot, or of any.
-bool is_of(const Fault& fault, std::string_view body) {
+bool matches_request(const Fault& fault, std::string_view body) {
   return !fault.robot || body.contains(*fault.robot);
 }
 
@@ -289,12 +289,13 @@ void spoil(const Fault& fault, Aim aim, Manner manner, Judgement& judgement) {
   if (records(fault) && (outcome.kind != Outcome::Kind::Answered || outcome.answer.status == 0)) return;
   const bool is_status = aim == Aim::Status;
   if (fault.remaining && is_status) {
-    misstate(outcome.answer, "remaining_reports",
-             [&](OrderedJson& shown) { shown = shown.get<std::int64_t>() + *fault.remaining; });
+    change_member(outcome.answer, "remaining_reports",
+                  [&](OrderedJson& shown) { shown = shown.get<std::int64_t>() + *fault.remaining; });
   }
   if (fault.clock_stands) {
-    misstate(outcome.answer, "run_clock",
-             [&](OrderedJson& shown) { shown = is_status ? kMeasuredStatusClock : kMeasuredReportClock; });
+    change_member(outcome.answer, "run_clock", [&](OrderedJson& shown) {
+      shown = is_status ? kMeasuredStatusClock : kMeasuredReportClock;
+    });
   }
   if (fault.effect != nullptr) outcome = fault.effect->outcome_of({aim, manner, std::move(outcome)});
   if (fault.retry_after) {
@@ -330,17 +331,17 @@ OrderResult Faults::obey(const Orders& orders) {
   return {};
 }
 
-OrderResult Faults::tell(std::string_view aim_and_fault) {
+OrderResult Faults::add_order(std::string_view aim_and_fault) {
   const Orders orders = ADIT_TRY(read_order(aim_and_fault));
   return obey(orders);
 }
 
-OrderResult Faults::tell_all(const Json& told) {
+OrderResult Faults::add_orders(const Json& told) {
   const Orders orders = ADIT_TRY(read_orders(told));
   return obey(orders);
 }
 
-OrderResult Faults::tell_rate(std::string_view aim_fault_and_rate) {
+OrderResult Faults::add_rate(std::string_view aim_fault_and_rate) {
   const std::size_t equals = aim_fault_and_rate.rfind('=');
   const auto rate = number_of<double>(aim_fault_and_rate.substr(equals + 1), 0, 1);  // npos + 1 is 0
   if (!rate) {
@@ -378,7 +379,7 @@ Fault Faults::random_fault(Aim aim, std::string_view body, Clock::time_point now
       drawn -= rate.rate;
       continue;
     }
-    if (!is_of(rate.fault, body)) return {};
+    if (!matches_request(rate.fault, body)) return {};
     if (rate.fault.times == 1 && !rate.fault.lasts) return rate.fault;
     queue(aim).push_front(rate.fault);
     return *from_queue(aim, body, now);
@@ -397,7 +398,7 @@ std::optional<Fault> Faults::from_queue(Aim aim, std::string_view body, Clock::t
   if (waiting.empty()) return std::nullopt;
   Fault& front = waiting.front();
   if (front.lasts && !until) until = now + std::chrono::duration_cast<Clock::duration>(*front.lasts);
-  if (!is_of(front, body)) return Fault{};
+  if (!matches_request(front, body)) return Fault{};
   Fault fault = front;
   fault.times = 1;
   if (front.lasts) return fault;

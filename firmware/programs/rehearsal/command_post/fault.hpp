@@ -69,12 +69,12 @@ class Faults {
   explicit Faults(std::uint64_t seed) : chance_(seed) {}
 
   /// "reports:record-then-drop": appended to that queue. "clock:constant", "clock:running": from now on.
-  OrderResult tell(std::string_view aim_and_fault);
+  OrderResult add_order(std::string_view aim_and_fault);
   /// "reports:record-then-drop=0.1": to one request of ten, on average. "reports:429=3=0.1" begins at one of
   /// ten that find no fault waiting, "mapping:500,robot=ugv1=0.1" happens to one of ten of that robot's.
-  OrderResult tell_rate(std::string_view aim_fault_and_rate);
+  OrderResult add_rate(std::string_view aim_fault_and_rate);
   /// {"reports": ["record-then-drop", "ok"], "status": ["500"]}: appended, all or not at all.
-  OrderResult tell_all(const Json& told);
+  OrderResult add_orders(const Json& told);
 
   /// From now on every request is answered as it should be.
   void clear();

@@ -54,7 +54,7 @@ struct Options {
   RunPlan run;
   std::optional<double> rate;            // Hz; absent: by the manner
   bool one_api_limit = false;            // over statuses and reports together
-  std::optional<Counted> counted;        // how the mapping rate is measured; absent: by the manner
+  std::optional<RateBasis> counted;      // how the mapping rate is measured; absent: by the manner
   double link = 0;                       // Mbit/s over both endpoints; 0: no limit
   std::vector<std::string> roster;       // the robots' names; empty: any
   std::vector<std::string> faults;       // "reports:record-then-drop", not yet understood
@@ -103,7 +103,7 @@ class CommandPost {
     return options_.limit_bytes > 0 && !request.fault && request.body.size() > options_.limit_bytes;
   }
   void note_order(const Request& request, const Fault& fault, Judgement& judgement);
-  void note_names(Judgement& judgement) const;
+  void check_names(Judgement& judgement) const;
   Outcome last_answer_to(Aim aim);
   void note_answer(Aim aim, const Outcome& outcome);
   Outcome receive(Side& side, std::optional<Aim> aim, const Request& request);
@@ -137,7 +137,7 @@ class CommandPost {
 
 /// After it the connection ends.
 Outcome last_answer(Outcome outcome) {
-  outcome.after = After::Close;
+  outcome.after = ConnectionAction::Close;
   return outcome;
 }
 
@@ -285,9 +285,9 @@ bool CommandPost::redirects(const Request& request) const {
 }
 
 /// ICD 6.4 and 6.5: a name is one of the robots' that are registered. A state says each of them once.
-void CommandPost::note_names(Judgement& judgement) const {
+void CommandPost::check_names(Judgement& judgement) const {
   std::set<std::string> posed;
-  for (const Accepted& part : judgement.accepted.parts) {
+  for (const AcceptedPart& part : judgement.accepted.parts) {
     const bool is_robot = part.kind != "marker" && part.kind != "report" && !part.robot.empty();
     if (is_robot && !options_.roster.empty() &&
         std::ranges::find(options_.roster, part.robot) == options_.roster.end()) {
@@ -315,8 +315,8 @@ void CommandPost::note_order(const Request& request, const Fault& fault, Judgeme
 Outcome CommandPost::last_answer_to(Aim aim) {
   const std::lock_guard lock(answers_mutex_);
   const auto& before = answers_[static_cast<std::size_t>(aim)];
-  if (!before) return {.kind = Outcome::Kind::Breaks, .after = After::Close};
-  return {.answer = *before, .after = After::Close};
+  if (!before) return {.kind = Outcome::Kind::Breaks, .after = ConnectionAction::Close};
+  return {.answer = *before, .after = ConnectionAction::Close};
 }
 
 void CommandPost::note_answer(Aim aim, const Outcome& outcome) {
@@ -343,7 +343,7 @@ Judgement CommandPost::judge(Side& side, std::optional<Aim> aim, const Fault& fa
     return early_judgement(request, aim, last_answer(page(413, "Request Entity Too Large")));
   const bool judged = !aim || records(fault);
   Judgement judgement = judged ? judge_safely(*side.endpoint, request) : skip_judgement(*aim, request);
-  note_names(judgement);
+  check_names(judgement);
   arrivals_.note(judgement.accepted.markers, judgement.findings);
   if (!judged) judgement.outcome = last_answer_to(*aim);
   if (judged && aim) note_answer(*aim, judgement.outcome);
@@ -433,7 +433,7 @@ Outcome CommandPost::control(const Request& request) {
   }
   if (wanted == "GET /faults") return answer_with(200, faults_.remaining());
   if (wanted == "POST /faults") {
-    const OrderResult told = faults_.tell_all(sent.value_or(Json()));
+    const OrderResult told = faults_.add_orders(sent.value_or(Json()));
     return told ? answer_with(200, faults_.remaining()) : answer_refusal(422, told.error());
   }
   if (wanted == "DELETE /faults") {
@@ -458,8 +458,8 @@ Outcome CommandPost::control(const Request& request) {
 }
 
 using command_line::number;
+using command_line::Presence;
 using command_line::set_by;
-using command_line::Wanted;
 using command_line::Wrong;
 
 constexpr double kMost = 1e9;
@@ -470,10 +470,10 @@ std::expected<Address, std::string> listening_address(const std::string& text) {
   return address;
 }
 
-std::expected<Counted, std::string> counted_of(const std::string& text) {
-  if (text == "starts") return Counted::Starts;
-  if (text == "last-bytes") return Counted::LastBytes;
-  if (text == "answers") return Counted::Answers;
+std::expected<RateBasis, std::string> parse_rate_basis(const std::string& text) {
+  if (text == "starts") return RateBasis::Starts;
+  if (text == "last-bytes") return RateBasis::LastBytes;
+  if (text == "answers") return RateBasis::Answers;
   return std::unexpected("expected starts, last-bytes or answers, got '" + text + "'");
 }
 
@@ -513,11 +513,11 @@ Wrong parse_as_measured(Options& options, const std::string&) {
       .about = "Simulated Command Post for rehearsals.",
       .rows =
           {{"--scoring", "ADDR:PORT", "address of the scoring endpoint (port 0: any free port)",
-            parsed_value<listening_address>(options.scoring), Wanted::Always},
+            parsed_value<listening_address>(options.scoring), Presence::Required},
            {"--mapping", "ADDR:PORT", "address of the mapping endpoint",
-            parsed_value<listening_address>(options.mapping), Wanted::Always},
+            parsed_value<listening_address>(options.mapping), Presence::Required},
            {"--secrets", "DIR", "directory of the tokens: scoring.token and mapping.token", &options.secrets,
-            Wanted::Always},
+            Presence::Required},
            {"--artifacts", "CSV", "true artifacts that reports are scored against: type,x,y,z",
             &options.artifacts},
            {"--transcript", "DIR", "record every request in this directory", &options.transcript},
@@ -542,7 +542,7 @@ Wrong parse_as_measured(Options& options, const std::string&) {
            {"--counts", "WHAT",
             "starts, last-bytes or answers: where --rate measures the interval between two maps, states or "
             "markers messages",
-            parsed_value<counted_of>(options.counted)},
+            parsed_value<parse_rate_basis>(options.counted)},
            {"--link", "MBIT",
             "limit the data received at both endpoints together to MBIT Mbit/s (0: no limit)",
             number<0.0, kMost>(options.link)},
@@ -593,12 +593,12 @@ int complain(const std::string& why) {
   return kWrongUse;
 }
 
-OrderResult tell_faults(const Options& options, Faults& faults) {
+OrderResult add_faults(const Options& options, Faults& faults) {
   for (const std::string& text : options.faults) {
-    if (auto told = faults.tell(text); !told) return std::unexpected("--fault: " + told.error());
+    if (auto told = faults.add_order(text); !told) return std::unexpected("--fault: " + told.error());
   }
   for (const std::string& text : options.fault_rates) {
-    if (auto told = faults.tell_rate(text); !told) return std::unexpected("--fault-rate: " + told.error());
+    if (auto told = faults.add_rate(text); !told) return std::unexpected("--fault-rate: " + told.error());
   }
   return {};
 }
@@ -607,7 +607,7 @@ OrderResult tell_faults(const Options& options, Faults& faults) {
 std::expected<Options, std::string> parse_options(std::span<const char* const> arguments) {
   Options options = ADIT_TRY(command_line::read(command_line_of, arguments));
   Faults faults(options.seed);
-  ADIT_TRY(tell_faults(options, faults));
+  ADIT_TRY(add_faults(options, faults));
   return options;
 }
 
@@ -622,7 +622,7 @@ std::expected<std::unique_ptr<CommandPost>, std::string> build(const Options& op
     transcript = ADIT_TRY(Transcript::open(options.transcript, options.transcript_megabytes * 1'000'000));
   auto post = std::make_unique<CommandPost>(options, Secrets{scoring, mapping}, std::move(artifacts),
                                             std::move(transcript));
-  ADIT_TRY(tell_faults(options, post->faults()));
+  ADIT_TRY(add_faults(options, post->faults()));
   return post;
 }
 

@@ -47,7 +47,7 @@ class StampOrder {
 
 class StrictMapping : public Endpoint {
  public:
-  StrictMapping(std::string token, double hz, Counted counted) : token_(std::move(token)) {
+  StrictMapping(std::string token, double hz, RateBasis counted) : token_(std::move(token)) {
     for (const Function& function : kMappingFunctions)
       limits_.try_emplace(std::string(function.uri), hz, counted);
   }
@@ -65,7 +65,7 @@ class StrictMapping : public Endpoint {
  private:
   void judge_body(const Request& request, Judgement& judgement) {
     Findings& findings = judgement.findings;
-    const auto decisive = [&findings] { return findings.decisive(Manner::Strict); };
+    const auto decisive = [&findings] { return findings.first_rejected(Manner::Strict); };
     check_content(request, true, findings);
     std::optional<MappingMessage> message;
     if (decisive() == nullptr) message = read_mapping(request.body, format_of(request), judgement);
@@ -84,7 +84,7 @@ class StrictMapping : public Endpoint {
 /// After a 4xx it promises keep-alive and closes.
 Outcome closing(Outcome outcome) {
   if (outcome.answer.status >= 400 && outcome.answer.status < 500)
-    outcome.after = After::CloseThoughPromisingNot;
+    outcome.after = ConnectionAction::CloseThoughPromisingNot;
   return outcome;
 }
 
@@ -110,7 +110,7 @@ Outcome outcome_of(const Finding& finding) {
 
 class MeasuredMapping : public Endpoint {
  public:
-  MeasuredMapping(std::string token, double hz, Counted counted)
+  MeasuredMapping(std::string token, double hz, RateBasis counted)
       : token_(std::move(token)), cloud_limit_(hz, counted) {}
 
   Judgement judge(const Request& request) override {
@@ -143,7 +143,7 @@ class MeasuredMapping : public Endpoint {
       return;
     }
     auto message = read_mapping(*body, format_of(request), judgement);
-    if (const Finding* const finding = findings.decisive(Manner::AsMeasured)) {
+    if (const Finding* const finding = findings.first_rejected(Manner::AsMeasured)) {
       judgement.outcome = outcome_of(*finding);
       return;
     }
@@ -169,11 +169,11 @@ class MeasuredMapping : public Endpoint {
 }  // namespace
 
 std::unique_ptr<Endpoint> mapping_endpoint(Manner manner, std::string token, std::optional<double> hz,
-                                           std::optional<Counted> counted) {
+                                           std::optional<RateBasis> counted) {
   const double most = hz.value_or(1);
   if (manner == Manner::Strict)
-    return std::make_unique<StrictMapping>(std::move(token), most, counted.value_or(Counted::Starts));
-  return std::make_unique<MeasuredMapping>(std::move(token), most, counted.value_or(Counted::Decoded));
+    return std::make_unique<StrictMapping>(std::move(token), most, counted.value_or(RateBasis::Starts));
+  return std::make_unique<MeasuredMapping>(std::move(token), most, counted.value_or(RateBasis::Decoded));
 }
 
 }  // namespace adit::rehearsal

@@ -356,7 +356,7 @@ void check_geometry(const Field& marker, std::int64_t type) {
 }
 
 /// Members that the ICD wants in each marker and the measured server does not miss.
-void check_looks(const Field& marker) {
+void check_appearance(const Field& marker) {
   if (const auto scale = marker.member("scale", Measured::Takes)) read_point(*scale);
   if (const auto color = marker.member("color", Measured::Takes)) read_color(*color);
   if (const auto lifetime = marker.optional_member("lifetime")) check_lifetime(*lifetime);
@@ -379,7 +379,7 @@ void check_alpha(const Field& marker) {
 }
 
 /// A display cannot show these, or shows them wrongly.
-void check_sense(const Field& marker, std::int64_t type) {
+void check_drawable(const Field& marker, std::int64_t type) {
   const Json& all = marker.value();
   const auto told = [&](const char* sentence) { marker.findings().add_remark(marker.path() + sentence); };
   if (type == kLineList && all.contains("points") && all["points"].size() % 2 != 0)
@@ -401,11 +401,11 @@ bool read_marker(const Field& marker, MappingMessage& message) {
   const auto place = marker.member("pose").and_then(read_pose);
   if (!change || !shape || !kind || !place) return false;
   if (*kind == 1) marker.member("action")->add_violation("expected 0, 2 or 3 (ICD 6.6)", Measured::Takes);
-  check_looks(marker);
+  check_appearance(marker);
   check_geometry(marker, *shape);
   if (*kind == 0) {
     check_alpha(marker);
-    check_sense(marker, *shape);
+    check_drawable(marker, *shape);
   }
   change->action = *kind;
   change->x = place->position.x;

@@ -50,7 +50,7 @@ std::optional<MapMessage> read_map(const Json& document, Format format, Findings
 
 struct Judgement;  // endpoint.hpp
 
-struct Accepted {
+struct AcceptedPart {
   std::string kind;   // "grid", "cloud", "pose", "marker", "report"
   std::string robot;  // a map's or a pose's name, a marker's ns; may be ""
 };
@@ -58,7 +58,7 @@ struct Accepted {
 /// A body for one of the mapping URIs, read.
 struct MappingMessage {
   std::vector<Stamp> stamps = {};
-  std::vector<Accepted> parts = {};
+  std::vector<AcceptedPart> parts = {};
   std::optional<MapMessage> map = {};
   std::vector<MarkerChange> markers = {};
 };

@@ -59,7 +59,7 @@ void write_words(std::ofstream& file, const char* title, const std::vector<Cloud
 void write_header(std::ofstream& file, const Cloud& cloud, std::size_t points) {
   file << "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\n";
   write_words(file, "FIELDS", cloud.fields, [](const CloudField& field) {
-    const std::string name = tame(field.name);
+    const std::string name = sanitize(field.name);
     return name.empty() ? "_" : name;
   });
   write_words(file, "SIZE", cloud.fields, [](const auto& field) { return size_of_datatype(field.datatype); });
@@ -147,7 +147,8 @@ std::uint64_t lines_in(const std::string& path) {
 std::string stem_of(std::uint64_t number, const MapMessage& map) {
   const std::string digits = std::to_string(number);
   const std::size_t zeros = 6 - std::min<std::size_t>(6, digits.size());
-  return icd::sentence(std::string(zeros, '0'), digits, "-", map.name.empty() ? "merged" : tame(map.name));
+  return icd::sentence(std::string(zeros, '0'), digits, "-",
+                       map.name.empty() ? "merged" : sanitize(map.name));
 }
 
 /// Replaces long texts and lists of a document by their sizes, so that a line of it can be read.
@@ -184,7 +185,7 @@ void Record::note(std::uint64_t number, const Judgement& judgement) {
     if (violations_.size() < kMostViolations) violations_.push_back({number, uri, std::move(sentence)});
   }
   if (judgement.outcome.kind == Outcome::Kind::Dies && killed_by_.empty()) {
-    killed_by_ = judgement.findings.decisive(Manner::AsMeasured)->sentence;
+    killed_by_ = judgement.findings.first_rejected(Manner::AsMeasured)->sentence;
   }
 }
 
@@ -468,12 +469,12 @@ std::string percent(const OrderedJson& share) {
 
 }  // namespace
 
-std::uint64_t Arrivals::Arrived::amount() const {
+std::uint64_t Arrivals::ReceivedMaps::amount() const {
   const auto add = [](std::uint64_t sum, const auto& dated) { return sum + dated.second; };
   return cells.count() + std::accumulate(points.begin(), points.end(), std::uint64_t{0}, add);
 }
 
-double Arrivals::Arrived::age(double share) const {
+double Arrivals::ReceivedMaps::age(double share) const {
   const double wanted = std::ceil(share * static_cast<double>(maps));
   std::uint64_t seen = 0;
   for (const auto& [age, count] : ages) {
@@ -483,7 +484,7 @@ double Arrivals::Arrived::age(double share) const {
   return 0;
 }
 
-Arrivals::Arrived* Arrivals::find_arrived(const std::string& robot, const std::string& kind) {
+Arrivals::ReceivedMaps* Arrivals::find_arrived(const std::string& robot, const std::string& kind) {
   const Source source{robot, kind};
   if (arrived_.size() >= kMostSources && !arrived_.contains(source)) return nullptr;
   return &arrived_[source];
@@ -494,7 +495,7 @@ void Arrivals::note(const MapMessage& map, Moment now) {
   if (!dates) return;
   const std::lock_guard lock(mutex_);
   const auto* const grid = std::get_if<Grid>(&map.msg);
-  Arrived* const here = find_arrived(map.name, grid != nullptr ? "grid" : "cloud");
+  ReceivedMaps* const here = find_arrived(map.name, grid != nullptr ? "grid" : "cloud");
   if (here == nullptr) return;
   ++here->maps;
   const auto age = std::chrono::floor<Milliseconds>(now - dates->newest);
@@ -532,13 +533,13 @@ void Arrivals::note(const std::vector<MarkerChange>& changes, Findings& findings
   before_ = changes.size();
 }
 
-bool Arrivals::told_maps(const Field& row) {
+bool Arrivals::read_map_row(const Field& row) {
   const auto robot = row.text("robot"), kind = row.text("kind");
   const auto amount = row.integer("amount", 0, INT64_MAX), newest = row.integer("newest", 0, INT64_MAX);
   const auto told_places = row.optional_member("places");
   const auto places = told_places ? told_places->integer(0, INT64_MAX) : 0;
   if (!robot || !kind || !amount || !newest || !places) return false;
-  if (Arrived* const here = find_arrived(*robot, *kind)) {
+  if (ReceivedMaps* const here = find_arrived(*robot, *kind)) {
     here->posted = {.amount = static_cast<std::uint64_t>(*amount),
                     .places = static_cast<std::uint64_t>(*places),
                     .newest = Moment(Milliseconds(*newest))};
@@ -546,7 +547,7 @@ bool Arrivals::told_maps(const Field& row) {
   return true;
 }
 
-bool Arrivals::told_markers(const Field& row, const Field& standing) {
+bool Arrivals::read_marker_row(const Field& row, const Field& standing) {
   const auto robot = row.text("robot");
   const auto markers = standing.elements();
   if (!robot || !markers || (should_.size() >= kMostRobots && !should_.contains(*robot))) return false;
@@ -566,7 +567,7 @@ std::expected<void, std::string> Arrivals::set_expected(const Json& posted) {
   const std::lock_guard lock(mutex_);
   for (const Field& row : rows) {
     const auto standing = row.optional_member("standing");
-    if (!(standing ? told_markers(row, *standing) : told_maps(row))) break;
+    if (!(standing ? read_marker_row(row, *standing) : read_map_row(row))) break;
   }
   if (findings.all().empty()) return {};
   return std::unexpected(findings.all().front().sentence);
@@ -596,7 +597,7 @@ std::vector<std::string> Arrivals::differences() const {
   return all;
 }
 
-OrderedJson Arrivals::row(const Source& source, const Arrived& arrived) {
+OrderedJson Arrivals::row(const Source& source, const ReceivedMaps& arrived) {
   OrderedJson row = {{"robot", source.first}, {"kind", source.second}, {"maps", arrived.maps}};
   const bool any = arrived.maps > 0;
   for (const auto& [name, share] : {std::pair{"p50", 0.5}, {"p99", 0.99}, {"most", 1.0}}) {
@@ -639,7 +640,7 @@ std::string Arrivals::table() const {
     const std::string robot = row["robot"];
     std::array<char, 64> line{};
     (void)std::snprintf(line.data(), line.size(), "  %-10.10s %-6.6s %5llu ",
-                        robot.empty() ? "(merged)" : tame(robot).c_str(),
+                        robot.empty() ? "(merged)" : sanitize(robot).c_str(),
                         row["kind"].get_ref<const std::string&>().c_str(),
                         static_cast<unsigned long long>(row["maps"].get<std::uint64_t>()));
     text += line.data();

@@ -130,18 +130,18 @@ class Arrivals {
   std::string table() const;
 
  private:
-  struct Posted {
+  struct PostedAmount {
     std::uint64_t amount = 0, places = 0;
     Moment newest;
   };
-  struct Arrived {
+  struct ReceivedMaps {
     std::uint64_t maps = 0;
     std::map<std::chrono::milliseconds, std::uint64_t> ages;  // how many maps were so old
     Moment newest;
     KnownCells cells;                        // of grids
     std::map<Moment, std::uint64_t> points;  // of clouds, by the date; the most that came in one map
     KnownPlaces places;
-    std::optional<Posted> posted;
+    std::optional<PostedAmount> posted;
 
     std::uint64_t amount() const;
     double age(double share) const;  // seconds; that so many of the maps do not exceed
@@ -150,14 +150,14 @@ class Arrivals {
   using Key = std::pair<std::string, std::int64_t>;    // ns, id
   using Places = std::map<Key, double>;                // x of each, metres
 
-  Arrived* find_arrived(const std::string& robot, const std::string& kind);
-  bool told_maps(const Field& row);
-  bool told_markers(const Field& row, const Field& standing);
+  ReceivedMaps* find_arrived(const std::string& robot, const std::string& kind);
+  bool read_map_row(const Field& row);
+  bool read_marker_row(const Field& row, const Field& standing);
   std::vector<std::string> differences() const;
-  static OrderedJson row(const Source& source, const Arrived& arrived);
+  static OrderedJson row(const Source& source, const ReceivedMaps& arrived);
 
   mutable std::mutex mutex_;  // guards all below
-  std::map<Source, Arrived> arrived_;
+  std::map<Source, ReceivedMaps> arrived_;
   Places standing_;
   std::size_t before_ = 0;                // markers of the message before
   std::map<std::string, Places> should_;  // by robot

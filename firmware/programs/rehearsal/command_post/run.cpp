@@ -35,7 +35,7 @@ bool claim(std::vector<Artifact>& artifacts, std::string_view type, const Vector
   for (Artifact& artifact : artifacts) {
     const double distance = std::hypot(artifact.position.x - position.x, artifact.position.y - position.y,
                                        artifact.position.z - position.z);
-    if (artifact.claimed || distance > least || !icd::same_but_for_case(artifact.type, type)) continue;
+    if (artifact.claimed || distance > least || !icd::equals_ignoring_case(artifact.type, type)) continue;
     nearest = &artifact;
     least = distance;
   }

@@ -83,7 +83,7 @@ class StrictScoring : public Endpoint {
     } else {
       findings.add_violation("JSON parsing failed: " + document.error(), Measured::Refuses, 400);
     }
-    if (const Finding* const finding = findings.decisive(Manner::Strict)) {
+    if (const Finding* const finding = findings.first_rejected(Manner::Strict)) {
       judgement.outcome = answer_refusal(*finding);
     } else if (sent) {
       answer_report(run_.submit(sent->type, sent->position, Clock::now()), document->value,
@@ -109,7 +109,7 @@ Outcome preflight() {
 }
 
 /// `Bearer` in any letter case.
-bool shows(const std::optional<std::string>& authorization, const std::string& token) {
+bool is_authorized(const std::optional<std::string>& authorization, const std::string& token) {
   constexpr std::string_view scheme = "bearer ";
   if (!authorization || authorization->size() != scheme.size() + token.size()) return false;
   return lower(authorization->substr(0, scheme.size())) == scheme && authorization->ends_with(token);
@@ -143,7 +143,7 @@ class MeasuredScoring : public Endpoint {
 
  private:
   void judge_known(const Request& request, Judgement& judgement) {
-    if (!shows(request.authorization, token_)) {
+    if (!is_authorized(request.authorization, token_)) {
       judgement.outcome = answer_with_detail(
           401, request.authorization ? kInvalidToken : "Authentication credentials were not provided.");
       judgement.outcome.answer.headers.emplace_back("WWW-Authenticate", "Bearer");

@@ -132,7 +132,8 @@ class Connection {
         if (wait(0, outcome.delay) == Event::Stopped) return false;
         outcome = outcome.then();
       }
-      if (!request->keep_alive && outcome.after == After::KeepOpen) outcome.after = After::Close;
+      if (!request->keep_alive && outcome.after == ConnectionAction::KeepOpen)
+        outcome.after = ConnectionAction::Close;
       const bool answers = outcome.kind == Outcome::Kind::Answered && outcome.answer.status != 0;
       if (outcome.kind == Outcome::Kind::Dies) return true;
       if (outcome.kind == Outcome::Kind::Hangs) wait(0, kForEver);
@@ -140,7 +141,7 @@ class Connection {
       if (answers)
         outcome.bytes = bytes_of(outcome, request->method == "HEAD", std::chrono::system_clock::now());
       if (!write(outcome.bytes)) return false;
-      if (outcome.after == After::KeepOpen) continue;
+      if (outcome.after == ConnectionAction::KeepOpen) continue;
       end(outcome.after);
       return false;
     }
@@ -222,8 +223,8 @@ class Connection {
     return true;
   }
 
-  void end(After after) const {
-    if (after == After::Reset) {  // closing sends a RST, and nothing that is still to be sent
+  void end(ConnectionAction after) const {
+    if (after == ConnectionAction::Reset) {  // closing sends a RST, and nothing that is still to be sent
       const linger at_once{.l_onoff = 1, .l_linger = 0};
       ::setsockopt(socket_.get(), SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
       return;
@@ -246,7 +247,7 @@ class Connection {
   boost::beast::flat_buffer buffer_;  // received, not yet parsed
 };
 
-void given_up(const char* why) {
+void log_aborted(const char* why) {
   std::fprintf(stderr, "adit-rehearsal: connection aborted: %s\n", why);
 }
 
@@ -268,7 +269,7 @@ std::string bytes_of(const Outcome& outcome, bool head, std::chrono::system_cloc
                                     "\r\nDate: ", utc_text("%a, %d %b %Y %H:%M:%S GMT", now));
   if (!answer.content_type.empty()) bytes += "\r\nContent-Type: " + answer.content_type;
   for (const auto& [name, value] : answer.headers) bytes += icd::sentence("\r\n", name, ": ", value);
-  bytes += outcome.after == After::Close ? "\r\nConnection: close" : "\r\nConnection: keep-alive";
+  bytes += outcome.after == ConnectionAction::Close ? "\r\nConnection: close" : "\r\nConnection: keep-alive";
   return bytes.append("\r\n\r\n").append(head ? "" : answer.body);
 }
 
@@ -338,7 +339,7 @@ void Server::begin(loop::FileDescriptor socket) {
   try {
     std::thread([this, held = std::move(socket)]() mutable { serve(std::move(held)); }).detach();
   } catch (const std::exception& error) {
-    given_up(error.what());
+    log_aborted(error.what());
     on_connection_ended();
   }
 }
@@ -348,7 +349,7 @@ void Server::serve(loop::FileDescriptor socket) {
     Connection connection(std::move(socket), stop_event_.get(), manner_, decide_);
     if (connection.serve()) stop();
   } catch (const std::exception& error) {  // memory that has run out
-    given_up(error.what());
+    log_aborted(error.what());
   }
   on_connection_ended();
 }

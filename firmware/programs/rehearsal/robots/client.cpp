@@ -192,7 +192,7 @@ void Tally::count(MessageKind kind, Fate fate, const std::string& why) {
   if (fate == Fate::Unanswered) add(silences_, what);
 }
 
-void Tally::report_came_to(const std::string& outcome) {
+void Tally::count_outcome(const std::string& outcome) {
   const std::scoped_lock lock(mutex_);
   add(reports_, outcome);
 }
@@ -263,7 +263,7 @@ std::optional<HttpReply> Client::send(const Message& message) {
 
 std::optional<HttpReply> Client::exchange(Connection& connection, MessageKind kind,
                                           const HttpRequest& request) {
-  if (!may_send(connection, request)) return std::nullopt;
+  if (!can_send(connection, request)) return std::nullopt;
   const bool report = kind == MessageKind::Report;
   tally_.count(kind, Fate::Posted);
   auto reply = connection.exchange(request, report ? kReportPatience : kPatience, report);
@@ -278,7 +278,7 @@ std::optional<HttpReply> Client::exchange(Connection& connection, MessageKind ki
   return *std::move(reply);
 }
 
-bool Client::may_send(Connection& connection, const HttpRequest& request) {
+bool Client::can_send(Connection& connection, const HttpRequest& request) {
   if (!style_.browser) return true;
   tally_.count(MessageKind::Preflight, Fate::Posted);
   const auto reply = connection.exchange(Encoder::preflight(request), kPatience);
@@ -294,22 +294,22 @@ bool Client::may_send(Connection& connection, const HttpRequest& request) {
   return allowed;
 }
 
-OperatorDesk::OperatorDesk(Post post, const Style& style, Tally& tally,
-                           std::function<void(const std::string&)> say)
+OperatorClient::OperatorClient(Post post, const Style& style, Tally& tally,
+                               std::function<void(const std::string&)> say)
     : post_(std::move(post)), style_(style), tally_(tally), say_(std::move(say)) {}
 
-bool OperatorDesk::is_news(std::size_t artifact) {
+bool OperatorClient::is_news(std::size_t artifact) {
   const std::scoped_lock lock(mutex_);
   return known_.insert(artifact).second;
 }
 
-void OperatorDesk::submit(Finding finding) {
+void OperatorClient::submit(Finding finding) {
   const std::scoped_lock lock(mutex_);
   waiting_.push_back(std::move(finding));
   changed_.notify_all();
 }
 
-void OperatorDesk::work(const std::stop_token& finish, const std::stop_token& abort) {
+void OperatorClient::work(const std::stop_token& finish, const std::stop_token& abort) {
   Clock::time_point next_status = Clock::now();
   while (!finish.stop_requested()) {
     if (Clock::now() >= next_status) {
@@ -327,7 +327,7 @@ void OperatorDesk::work(const std::stop_token& finish, const std::stop_token& ab
   }
 }
 
-void OperatorDesk::ask_status(const std::stop_token& abort) {
+void OperatorClient::ask_status(const std::stop_token& abort) {
   Client client(post_, "operator", style_, tally_, abort);
   const auto reply = client.send(StatusQuery{});
   if (!reply || reply->status != 200) return;  // counted by the client
@@ -335,7 +335,7 @@ void OperatorDesk::ask_status(const std::stop_token& abort) {
     tally_.count_failure("GET /api/status: " + status.error());
 }
 
-void OperatorDesk::tell(const Finding& finding, const std::string& outcome) const {
+void OperatorClient::print_outcome(const Finding& finding, const std::string& outcome) const {
   const Vector3& at = finding.report.position;
   std::array<char, 80> place{};
   (void)std::snprintf(place.data(), place.size(), " at (%.2f, %.2f, %.2f): ", at.x, at.y, at.z);
@@ -344,30 +344,30 @@ void OperatorDesk::tell(const Finding& finding, const std::string& outcome) cons
 
 /// A report that was refused with 429 was not recorded and goes again; one whose answer was lost may have
 /// been, and does not: that would cost one of the scarce reports.
-void OperatorDesk::report(const Finding& finding, const std::stop_token& finish,
-                          const std::stop_token& abort) {
+void OperatorClient::report(const Finding& finding, const std::stop_token& finish,
+                            const std::stop_token& abort) {
   Client client(post_, finding.robot, *finding.style, tally_, abort);
   while (!finish.stop_requested()) {
     const auto reply = client.send(finding.report);
     if (!reply) {
-      tally_.report_came_to("no answer");
-      return tell(finding, "no answer");
+      tally_.count_outcome("no answer");
+      return print_outcome(finding, "no answer");
     }
     if (reply->status == 429) {
       sleep_until(Clock::now() + kAfter429, finish);
       continue;
     }
     if (reply->status != 200 && reply->status != 201) {
-      tally_.report_came_to("rejected with " + std::to_string(reply->status));
-      return tell(finding, icd::sentence(reply->status, " ", sentence_of(reply->body)));
+      tally_.count_outcome("rejected with " + std::to_string(reply->status));
+      return print_outcome(finding, icd::sentence(reply->status, " ", sentence_of(reply->body)));
     }
     const auto outcome = parse_report_answer(reply->body);
     if (!outcome) {
       tally_.count_failure("POST /api/artifact_reports: " + outcome.error());
-      return tell(finding, outcome.error());
+      return print_outcome(finding, outcome.error());
     }
-    tally_.report_came_to(*outcome);
-    return tell(finding, std::to_string(reply->status) + " " + *outcome);
+    tally_.count_outcome(*outcome);
+    return print_outcome(finding, std::to_string(reply->status) + " " + *outcome);
   }
 }
 

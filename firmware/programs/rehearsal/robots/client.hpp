@@ -83,7 +83,7 @@ class Tally {
   /// `why`: the refusal's status and sentence, or why there was no answer.
   void count(MessageKind kind, Fate fate, const std::string& why = "");
   /// What an answered report came to: "scored +1", "run not started", ...
-  void report_came_to(const std::string& outcome);
+  void count_outcome(const std::string& outcome);
   /// Something of the team's own that is wrong, such as a map file.
   void count_failure(const std::string& what);
 
@@ -131,7 +131,7 @@ class Client {
 
  private:
   std::optional<HttpReply> exchange(Connection& connection, MessageKind kind, const HttpRequest& request);
-  bool may_send(Connection& connection, const HttpRequest& request);
+  bool can_send(Connection& connection, const HttpRequest& request);
 
   Encoder encoder_;
   const Style& style_;
@@ -151,10 +151,10 @@ inline void sleep_until(std::chrono::steady_clock::time_point time, const std::s
 
 /// Submits the robots' findings for the operator, each artifact once, one report after another. Also asks for
 /// the run's status now and then.
-class OperatorDesk {
+class OperatorClient {
  public:
   /// `say` prints a line. `style`, in which it asks for the status, and `tally` must outlive this object.
-  OperatorDesk(Post post, const Style& style, Tally& tally, std::function<void(const std::string&)> say);
+  OperatorClient(Post post, const Style& style, Tally& tally, std::function<void(const std::string&)> say);
 
   struct Finding {
     std::string robot;
@@ -172,7 +172,7 @@ class OperatorDesk {
  private:
   void ask_status(const std::stop_token& abort);
   void report(const Finding& finding, const std::stop_token& finish, const std::stop_token& abort);
-  void tell(const Finding& finding, const std::string& outcome) const;
+  void print_outcome(const Finding& finding, const std::string& outcome) const;
 
   Post post_;
   const Style& style_;

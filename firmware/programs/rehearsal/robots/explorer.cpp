@@ -22,9 +22,9 @@ constexpr double kReportNoise = 0.05;  // metres
 constexpr double kWrongReports = 0.15;
 
 /// A task at regular times. Missed times are not made up for.
-class Every {
+class PeriodicTimer {
  public:
-  Every(std::chrono::duration<double> period, std::chrono::steady_clock::time_point first)
+  PeriodicTimer(std::chrono::duration<double> period, std::chrono::steady_clock::time_point first)
       : period_(std::chrono::duration_cast<milliseconds>(period)), next_(first) {}
   bool due(std::chrono::steady_clock::time_point now) {
     if (now < next_) return false;
@@ -123,17 +123,17 @@ std::vector<Marker> MarkerScene::take_changes() {
   return std::exchange(changes_, {});
 }
 
-void Posted::note(const std::string& robot, MessageKind kind, const Amount& amount) {
+void PostedTotals::note(const std::string& robot, MessageKind kind, const Amount& amount) {
   const std::scoped_lock lock(mutex_);
   amounts_[{robot, kind}] = amount;
 }
 
-void Posted::note(const std::string& robot, const std::vector<Marker>& standing) {
+void PostedTotals::note(const std::string& robot, const std::vector<Marker>& standing) {
   const std::scoped_lock lock(mutex_);
   standing_[robot] = standing;
 }
 
-std::string Posted::json() const {
+std::string PostedTotals::json() const {
   const std::scoped_lock lock(mutex_);
   auto all = nlohmann::json::array();
   for (const auto& [source, posted] : amounts_) {
@@ -152,7 +152,7 @@ std::string Posted::json() const {
   return all.dump();
 }
 
-std::string arrivals_of(const Posted& posted, const Address& control) {
+std::string arrivals_of(const PostedTotals& posted, const Address& control) {
   constexpr std::chrono::seconds kLongest{5};
   const auto reply = Connection(control, {})
                          .exchange({.method = "POST",
@@ -169,8 +169,8 @@ std::string arrivals_of(const Posted& posted, const Address& control) {
 }
 
 Explorer::Explorer(const Cave& cave, std::uint64_t seed, std::size_t index, std::string name,
-                   const Style& style, const MapOffer& offer, Client& client, OperatorDesk& desk,
-                   Posted& posted)
+                   const Style& style, const MapOffer& offer, Client& client, OperatorClient& desk,
+                   PostedTotals& posted)
     : cave_(cave),
       index_(index),
       name_(std::move(name)),
@@ -234,10 +234,10 @@ void Explorer::report_sightings(double seconds) {
 }
 
 void Explorer::work(double metres_per_second, const std::stop_token& finish) {
-  Every state(index_ % 2 == 0 ? kTick : 2 * kTick, start_);
-  Every grid(maps_.offer().grid_every, start_ + 50ms);
-  Every cloud(maps_.offer().cloud_every, start_ + 150ms);
-  Every markers(2000ms, start_ + 250ms);
+  PeriodicTimer state(index_ % 2 == 0 ? kTick : 2 * kTick, start_);
+  PeriodicTimer grid(maps_.offer().grid_every, start_ + 50ms);
+  PeriodicTimer cloud(maps_.offer().cloud_every, start_ + 150ms);
+  PeriodicTimer markers(2000ms, start_ + 250ms);
   Clock::time_point before = start_;
   while (!finish.stop_requested()) {
     const Clock::time_point now = Clock::now();

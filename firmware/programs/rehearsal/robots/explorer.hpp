@@ -44,7 +44,7 @@ class MarkerScene {
 
 /// The amount of map data and the markers that each robot posted, rejected posts included. A rehearsal
 /// Command Post compares them with its own. Any thread may write to it.
-class Posted {
+class PostedTotals {
  public:
   struct Amount {
     std::uint64_t amount = 0;  // cells or points posted so far, each counted once
@@ -66,7 +66,7 @@ class Posted {
 
 /// Tells the rehearsal Command Post's control port the posted amounts. Returns its table of ages and shares,
 /// or a line with the reason why there is no table.
-std::string arrivals_of(const Posted& posted, const Address& control);
+std::string arrivals_of(const PostedTotals& posted, const Address& control);
 
 /// A robot and the software on it: walks, and posts what it knows at the rates of the field. Poses 5 or 10
 /// times a second, markers every 2 s, and the maps of its offer.
@@ -74,7 +74,7 @@ class Explorer {
  public:
   /// `cave`, `style`, `client`, `desk` and `posted` outlive the explorer.
   Explorer(const Cave& cave, std::uint64_t seed, std::size_t index, std::string name, const Style& style,
-           const MapOffer& offer, Client& client, OperatorDesk& desk, Posted& posted);
+           const MapOffer& offer, Client& client, OperatorClient& desk, PostedTotals& posted);
 
   void work(double metres_per_second, const std::stop_token& finish);
 
@@ -92,8 +92,8 @@ class Explorer {
   std::string name_;
   const Style& style_;
   Client& client_;
-  OperatorDesk& desk_;
-  Posted& posted_;
+  OperatorClient& desk_;
+  PostedTotals& posted_;
   Random random_;
   Robot robot_;
   MarkerScene scene_;

@@ -44,7 +44,7 @@ class Console {
   bool is_terminal() const { return terminal_; }
 
   /// A line that stays.
-  void say(const std::string& line) {
+  void print_line(const std::string& line) {
     if (quiet_) return;
     const std::scoped_lock lock(mutex_);
     print(live_.empty() ? line + "\n" : kClearLine + line + "\n" + live_);
@@ -96,7 +96,7 @@ std::expected<std::string, std::string> replay_file(const std::filesystem::path&
 class Team {
  public:
   /// All but `token` outlive the team.
-  Team(const Options& options, const std::string& token, const Cave& cave, Tally& tally, Posted& posted,
+  Team(const Options& options, const std::string& token, const Cave& cave, Tally& tally, PostedTotals& posted,
        Console& console)
       : options_(options),
         post_{.mapping = options.post, .scoring = options.scoring, .token = token},
@@ -105,7 +105,7 @@ class Team {
         posted_(posted),
         console_(console),
         desk_(post_, options.style.style_of(0), tally,
-              [&console](const std::string& line) { console.say(line); }) {
+              [&console](const std::string& line) { console.print_line(line); }) {
     for (std::size_t index = 0; index < options.robots; ++index) run([this, index] { explore(index); });
     if (options.robots > 0) run([this] { desk_.work(finish_.get_token(), abort_.get_token()); });
     run([this] { replay(); });
@@ -155,7 +155,7 @@ class Team {
       Client client(post_, "replay", options_.style.style_of(i), tally_, abort_.get_token());
       const auto said = replay_file(options_.maps[i], client, finish_.get_token());
       if (!said) tally_.count_failure(said.error());
-      console_.say(said ? *said : said.error());
+      console_.print_line(said ? *said : said.error());
     }
     replay_done_ = !finish_.stop_requested();
   }
@@ -164,9 +164,9 @@ class Team {
   const Post post_;
   const Cave& cave_;
   Tally& tally_;
-  Posted& posted_;
+  PostedTotals& posted_;
   Console& console_;
-  OperatorDesk desk_;
+  OperatorClient desk_;
   std::stop_source finish_, abort_;
   std::atomic<int> working_ = 0;
   std::atomic<bool> replay_done_ = false;
@@ -187,7 +187,7 @@ bool write_truth(const Cave& cave, const std::filesystem::path& file) {
 }
 
 /// Waits up to 100 ms for one of them.
-bool has_come(const sigset_t& signals) {
+bool wait_for_signal(const sigset_t& signals) {
   constexpr timespec kWait{.tv_sec = 0, .tv_nsec = 100'000'000};
   return sigtimedwait(&signals, nullptr, &kWait) > 0;
 }
@@ -217,7 +217,7 @@ std::chrono::milliseconds watch(const Options& options, const std::vector<Messag
   const std::chrono::seconds every{console.is_terminal() ? 1 : 5};
   const Clock::time_point start = Clock::now();
   Clock::time_point next_line = start + every;
-  while (!has_come(signals)) {
+  while (!wait_for_signal(signals)) {
     const Clock::time_point now = Clock::now();
     if (options.run_for && now - start >= *options.run_for) return kGrace;
     if (options.stop_when_posted && team.replay_done() && has_posted_all(kinds, tally)) return kGrace;
@@ -236,7 +236,7 @@ int run(const Options& options, const Cave& cave) {
   if (!token) return complain(token.error());
   const std::vector<MessageKind> kinds = kinds_to_post(options);
   Tally tally;
-  Posted posted;
+  PostedTotals posted;
   Console console(options.quiet);
   Team team(options, *token, cave, tally, posted, console);
   team.stop(watch(options, kinds, team, tally, console, signals));

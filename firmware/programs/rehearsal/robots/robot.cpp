@@ -23,7 +23,7 @@ constexpr std::size_t kValues = 4;     // of a point
 static_assert(std::endian::native == std::endian::little, "clouds are sent little endian");
 
 /// A cell's value after one more look: free cells sink from 45 to 0, rock rises from 55 to 100.
-std::uint8_t surer(std::uint8_t value, bool rock) {
+std::uint8_t updated_cell(std::uint8_t value, bool rock) {
   constexpr int kFirst = 5, kStep = 15;
   const int before = value == kUnknown ? 50 : value;
   const int step = value == kUnknown ? kFirst : kStep;
@@ -105,7 +105,7 @@ std::uint32_t finer_by(const Lattice& lattice, std::size_t bytes) {
 }
 
 /// The same grid with `times` x `times` cells for each.
-Grid finer(const Grid& grid, std::uint32_t times) {
+Grid refine(const Grid& grid, std::uint32_t times) {
   Grid fine = grid;
   fine.resolution = grid.resolution / times;
   fine.width = grid.width * times;
@@ -146,7 +146,7 @@ void RobotMap::see_floor(const Cave& cave, Cell cell, Random& random) {
     see_point(x, y, cave.ceiling_at(cell), 25 + 10 * random.uniform(0, 1), random);
     include(cell);
   }
-  cells_[cell] = surer(cells_[cell], false);
+  cells_[cell] = updated_cell(cells_[cell], false);
 }
 
 void RobotMap::see_rock(Cell cell, double floor, double ceiling, Random& random) {
@@ -159,7 +159,7 @@ void RobotMap::see_rock(Cell cell, double floor, double ceiling, Random& random)
     }
     include(cell);
   }
-  cells_[cell] = surer(cells_[cell], true);
+  cells_[cell] = updated_cell(cells_[cell], true);
 }
 
 void RobotMap::sweep(const Cave& cave, const Vector3& from, Random& random) {
@@ -236,7 +236,7 @@ bool is_frontier(const RobotMap& map, Cell cell) {
   });
 }
 
-std::vector<Cell> way_to_explore(const RobotMap& map, Cell start, double heading, Random& random) {
+std::vector<Cell> exploration_path(const RobotMap& map, Cell start, double heading, Random& random) {
   const Reach reach = reach_from(map, start);
   Cell goal = start;
   double cheapest = std::numeric_limits<double>::infinity();
@@ -270,7 +270,7 @@ Robot::Robot(const Cave& cave, std::uint64_t seed, std::size_t index)
       noticed_(cave.artifacts().size(), false) {
   map_.sweep(cave_, pose().position, random_);
   map_.sweep(cave_, pose().position, random_);
-  notice();
+  detect_artifacts();
 }
 
 Placement Robot::pose() const {
@@ -282,7 +282,7 @@ void Robot::step(double metres) {
   const Lattice& lattice = cave_.lattice();
   while (metres > 0) {
     if (way_.empty()) {
-      way_ = way_to_explore(map_, lattice.cell_at(x_, y_), preferred_, random_);
+      way_ = exploration_path(map_, lattice.cell_at(x_, y_), preferred_, random_);
       std::ranges::reverse(way_);
       if (way_.empty()) return;  // it stands still until it sees a way
     }
@@ -308,10 +308,10 @@ void Robot::advance(double metres) {
   if (!way_.empty() && !is_frontier(map_, way_.front()) && random_.chance(0.2)) way_.clear();
   step(metres);
   map_.sweep(cave_, pose().position, random_);
-  notice();
+  detect_artifacts();
 }
 
-void Robot::notice() {
+void Robot::detect_artifacts() {
   const Vector3 here = pose().position;
   for (std::size_t i = 0; i < cave_.artifacts().size(); ++i) {
     const Vector3& there = cave_.artifacts()[i].position;
@@ -391,7 +391,7 @@ std::optional<Grid> MapMaker::grid(const RobotMap& map, const Vector3& here, con
               : offer_.grids == GridForm::Tiles ? next_tile(map, time.stamp)
                                                 : map.grid(time.stamp);
   if (const std::uint32_t times = finer_by(map.lattice(), offer_.grid_bytes); times > 1)
-    grid = finer(grid, times);
+    grid = refine(grid, times);
   if (offer_.grids == GridForm::Drifting) move_frame(grid);
   date(grid, time.posted);
   cells_.add(grid.resolution, grid.origin.position.x, grid.origin.position.y, grid.width, grid.cells);

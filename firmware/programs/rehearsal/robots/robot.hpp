@@ -66,7 +66,7 @@ bool is_frontier(const RobotMap& map, Cell cell);
 /// The way from `start`, over walkable cells wherever it can, to the best frontier: near, and in the
 /// direction `heading` (radians) that this robot prefers, so that a team spreads out. If all is explored, the
 /// way to some place that `random` chooses. Empty if there is no way.
-std::vector<Cell> way_to_explore(const RobotMap& map, Cell start, double heading, Random& random);
+std::vector<Cell> exploration_path(const RobotMap& map, Cell start, double heading, Random& random);
 
 /// One robot in the cave: it walks to what it does not know yet, sees with its lidar, and notices artifacts
 /// that come near. Reads no clock: time passes in advance().
@@ -89,7 +89,7 @@ class Robot {
 
  private:
   void step(double metres);
-  void notice();
+  void detect_artifacts();
 
   const Cave& cave_;
   Random random_;

@@ -9,11 +9,11 @@ namespace {
 using journal::HandoverState;
 using journal::RecordKind;
 
-using Records = std::vector<std::pair<Kind, std::string>>;
+using Records = std::vector<std::pair<RecordKind, std::string>>;
 
 Records snapshot_of(const HandoverState& carried) {
   Records records;
-  carried.write([&records](Kind kind, std::string_view said) { records.emplace_back(kind, said); });
+  carried.write([&records](RecordKind kind, std::string_view said) { records.emplace_back(kind, said); });
   return records;
 }
 
@@ -29,7 +29,7 @@ Records records_of(Input input) {
   while (input.size() >= 3) {
     const auto bytes = bytes_of(input.substr(0, 3));
     const std::size_t size = bytes[1] | bytes[2] << 8U;
-    records.emplace_back(static_cast<Kind>(bytes[0]), input.substr(3, size));
+    records.emplace_back(static_cast<RecordKind>(bytes[0]), input.substr(3, size));
     input.remove_prefix(std::min(input.size(), 3 + size));
   }
   return records;

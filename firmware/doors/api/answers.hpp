@@ -14,16 +14,14 @@
 
 namespace adit::api {
 
-/// Whether a client with this Accept-Encoding accepts gzip (RFC 9110 12.5.3). Without the header it does not,
-/// because scripts expect plain text.
+/// Whether a client accepts gzip (RFC 9110 12.5.3). No header means no, because scripts expect plain text.
 bool accepts_gzip(std::string_view accept_encoding);
 
 /// Whether an answer's body is compressed by gzip.
 bool is_packed(const intake::Answer& answer);
 
-/// Compresses an answer's body with gzip if that pays: text and JSON of some kB up to 1 MiB. The limit exists
-/// because the loop does it (2 ms for each 256 KiB on a desk machine). A body with an ETag stays unchanged,
-/// because the ETag names its bytes.
+/// Compresses a body with gzip if that pays: text and JSON of some kB up to 1 MiB, because the loop does it
+/// (2 ms for each 256 KiB on a desk machine). An ETag names its body's bytes, so such a body stays unchanged.
 void pack_if_worthwhile(intake::Answer& answer);
 
 /// Adds headers against loading, framing and content sniffing.
@@ -53,8 +51,7 @@ template <class Part>
 intake::Answer answer_after(const Part& part, const icd::Checked<void>& done) {
   return done ? uncached_answer(part.state()) : refusal_answer(done.error());
 }
-/// Refusal of a change of the settings. 409 while another change is being applied (api::Setup) has
-/// Retry-After, because that takes a second.
+/// Refusal of a change. 409 (api::Setup applies another one) has Retry-After, because that takes a second.
 intake::Answer refused_change(const icd::Refusal& why);
 icd::Refusal nothing_at(std::string_view path);
 /// 405; `allowed` as in RFC 9110 10.2.1: "GET, HEAD".

@@ -19,7 +19,6 @@
 
 namespace adit::api {
 
-/// The gateway's parts that the API uses.
 struct ApiServices {
   Source& source;
   Operator& decisions;
@@ -57,7 +56,6 @@ class Api final : public intake::Handler {
                                          std::shared_ptr<intake::Responder> asked_by,
                                          std::shared_ptr<intake::FlowControl> flow) override;
 
-  /// Replaces tokens and redaction.
   void set_tokens(std::vector<icd::BearerToken> tokens, icd::Redaction redaction);
 
   /// Call after a change of data that the page shows.

@@ -21,7 +21,6 @@ class Authenticator {
   Authenticator(loop::Loop& loop, Keys& keys, std::vector<icd::BearerToken> tokens)
       : loop_(loop), keys_(keys), tokens_(std::move(tokens)) {}
 
-  /// Replaces the tokens.
   void set_tokens(std::vector<icd::BearerToken> tokens) { tokens_ = std::move(tokens); }
 
   /// Error 401 or 403: the client may not do what `who` may.
@@ -40,7 +39,6 @@ class Authenticator {
   std::vector<icd::BearerToken> tokens_;
 };
 
-/// The answer to a rejected client.
 intake::Answer rejection_answer(const icd::Refusal& refusal);
 
 }  // namespace adit::api

@@ -119,7 +119,6 @@ class Box {
   virtual ~Box() = default;
   /// The stored records with a larger number, oldest first, without tokens.
   virtual std::vector<LogRecord> log(std::uint64_t after) const = 0;
-  /// Number of the newest record.
   virtual std::uint64_t last_record_number() const = 0;
   virtual Usage usage() const = 0;
   virtual About about() const = 0;

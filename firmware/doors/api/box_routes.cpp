@@ -35,7 +35,6 @@ std::string bundle_name(Time now) {
 
 }  // namespace
 
-/// A selection of log records.
 struct LogFilter {
   int severity = 7;         // this severity and worse ones
   std::string text;         // part of the line, ignoring case; "": any

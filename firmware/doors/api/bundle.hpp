@@ -27,7 +27,6 @@ class Ustar {
   icd::ChunkedBytes archive_;
 };
 
-/// A file of the support bundle.
 struct BundleFile {
   std::string name, body;
 };
@@ -36,8 +35,7 @@ struct BundleFile {
 /// begins with a line that says so.
 void cut_to(std::vector<BundleFile>& files, std::size_t most);
 
-/// Returns the files as a .tar.gz with the directory `folder`, at most kMostBundle bytes. Call it on a worker
-/// thread, because it is slow.
+/// The files as a .tar.gz with the directory `folder`, at most kMostBundle bytes. Slow: call it on a worker.
 inline constexpr std::size_t kMostBundle = 10'000'000;
 std::string write_bundle(std::vector<BundleFile> files, const std::string& folder, Time now);
 

@@ -1,6 +1,5 @@
-// OpenAPI's schemas of the rows, computed by the compiler. Section "schemas" of the object file holds their
-// text (CMakeLists.txt). The file is linked into no program and need not run, so it can be built for another
-// machine.
+// OpenAPI's schemas of the rows, computed by the compiler into section "schemas" of the object file
+// (CMakeLists.txt). It is linked into no program and need not run, so it can be built for another machine.
 #include "codec/schemas.hpp"
 
 // NOLINTBEGIN(bugprone-suspicious-include): the sources hold the descriptions.

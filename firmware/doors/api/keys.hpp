@@ -42,8 +42,7 @@ class Keys {
  public:
   virtual ~Keys() = default;
 
-  /// Why the passwords cannot be read, as a sentence; or "". While it is set, passwords can be neither right
-  /// nor wrong.
+  /// Why the passwords cannot be read, as a sentence; then none is right or wrong. "": they can be read.
   virtual const std::string& unread() const = 0;
   /// Whether the operator's password is missing. The code sets it.
   virtual bool first_start() const = 0;
@@ -60,9 +59,8 @@ class Keys {
   virtual void check(std::string password, std::string address,
                      std::function<void(std::optional<access::Role>)> done) = 0;
 
-  /// Sets a role's password, which must have passed access::check_new(). std::nullopt removes it (the
-  /// viewer's only). Error: 409 while another is being set, 422 if the other role has it, 503 if it cannot be
-  /// stored.
+  /// Sets a role's password, which passed access::check_new(). std::nullopt removes it (the viewer's only).
+  /// Error: 409 while another is being set, 422 if the other role has it, 503 if it cannot be stored.
   virtual void set(access::Role role, std::optional<std::string> password,
                    std::function<void(icd::Checked<void>)> done) = 0;
 

@@ -58,7 +58,6 @@ Tracks thin_tracks(std::vector<Track> tracks) {
 
 constexpr std::string_view kMerged = "-";  // stands for the robot "", which a path cannot name
 
-/// A layer, its time and its colours.
 struct LayerRequest {
   picture::Layer layer;
   std::optional<double> stamp, low, high;
@@ -72,7 +71,6 @@ struct TileRequest {
   std::string has;  // If-None-Match
 };
 
-/// A request for several tiles of a layer.
 struct TilesRequest {
   static constexpr std::size_t kMost = 64;
 

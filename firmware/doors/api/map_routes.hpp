@@ -36,8 +36,7 @@ class MapRoutes {
   CoveredMap& covered_;
 };
 
-/// Stored data of the present and earlier runs: README.md. A run is read once and held for kHeld after its
-/// last use.
+/// Stored data of all runs: README.md. A run is read once and held for kHeld after its last use.
 class KeptRunsRoutes {
  public:
   static constexpr std::chrono::seconds kHeld{60};

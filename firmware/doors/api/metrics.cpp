@@ -36,8 +36,7 @@ using Label = Exposition::Label;
 
 constexpr double kBytesPerMbit = 1e6 / 8;
 
-/// A metric with one sample for each row, except for values that are std::nullopt. `value`: a member of the
-/// row, or a function of it.
+/// A metric with a sample for each row, except for std::nullopt. `value`: a member or a function of the row.
 void add_rows(Exposition& out, std::string_view name, std::string_view help, const auto& rows, auto labels_of,
               auto value) {
   out.begin(name, help);

@@ -10,8 +10,7 @@
 
 namespace adit::api {
 
-/// Metrics in Prometheus' text exposition format, version 0.0.4. Add the samples of a metric directly after
-/// it.
+/// Metrics in Prometheus' text exposition format 0.0.4. Add the samples of a metric directly after it.
 class Exposition {
  public:
   static constexpr const char* kContentType = "text/plain; version=0.0.4; charset=utf-8";
@@ -36,7 +35,6 @@ class Exposition {
   std::string text_, name_;
 };
 
-/// Input of the metrics.
 struct MetricsInput {
   RunView view;
   ReportCounts reports;  // of all runs

@@ -60,11 +60,9 @@ class Network {
   virtual NetworkView state() const = 0;
   /// `asker`: the client's address.
   virtual network::Findings check(const network::Numbers& wanted, const std::string& asker) const = 0;
-  /// Applies numbers that passed check(), until they are confirmed or reverted. adit-network checks them
-  /// again.
+  /// Applies numbers that passed check(), until confirmed or reverted. adit-network checks them again.
   virtual icd::Checked<void> change(const network::Numbers& wanted) = 0;
-  /// `local`: the box's address in the confirming connection. It must be the new one, which proves that the
-  /// user can reach it.
+  /// `local`: the box's address in this connection. It must be the new one, which proves that users reach it.
   virtual icd::Checked<void> confirm(const std::string& local) = 0;
   virtual icd::Checked<void> revert() = 0;
 };

@@ -24,7 +24,6 @@ struct ListForm {
 /// A JSON array.
 ListForm json_list();
 
-/// Writes lists of reports.
 class ReportLists {
  public:
   /// Both must outlive this object, and this object must outlive the loop's turns.

@@ -71,8 +71,7 @@ std::vector<const codec::Member*> columns() {
   return all;
 }
 
-/// A line of CSV: the result of `each` for each column. A nested row fills one column for each of its
-/// members.
+/// A line of CSV: the result of `each` for each column. A nested row fills a column for each of its members.
 std::string line(const auto& each) {
   std::string text;
   for (const codec::Member* const member : columns()) {

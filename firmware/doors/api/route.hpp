@@ -37,7 +37,6 @@ class Setup;
 class Spare;
 class Updates;
 
-/// All handlers.
 using Handlers =
     std::tuple<PageRoutes*, SessionRoutes*, RunRoutes*, MapRoutes*, ReportRoutes*, BoxRoutes*,
                KeptRunsRoutes*, Certificate*, Clock*, Network*, SelfTest*, Setup*, Spare*, Updates*>;

@@ -17,8 +17,7 @@ namespace {
 constexpr auto kSpacing = std::chrono::milliseconds{1000 / RunStream::kEventsPerSecond};
 constexpr std::chrono::seconds kCalm{1};
 
-/// Rounds to milliseconds, millimetres or microseconds, which is finer than the page shows and halves the
-/// text.
+/// Rounds to ms, mm or microseconds, which is finer than the page shows and halves the text.
 double round_number(double number) {
   constexpr double kSteps = 1000;
   return std::round(number * kSteps) / kSteps + 0.0;  // avoids -0

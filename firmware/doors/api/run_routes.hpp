@@ -31,8 +31,7 @@ class RunStream {
 
   RunStream(loop::Loop& loop, Source& source);
 
-  /// Answers with a stream of events, or 503 beyond kMostPages. The stream ends once `has_access` returns
-  /// false.
+  /// Answers with a stream of events until `has_access` returns false, or with 503 beyond kMostPages.
   void open(intake::Responder& responder, std::function<bool()> has_access);
   void on_changed();
 
@@ -80,7 +79,6 @@ class RunRoutes {
   intake::Answer begin_run();
   /// Replaces a ledger that cannot be read.
   intake::Answer begin_ledger();
-  /// An action on a rejected message.
   template <RejectedAction action>
   intake::Answer change_rejected(std::uint64_t number) {
     return change_rejected(number, action);

@@ -54,8 +54,7 @@ double length_of(const std::vector<Point>& points) {
   return length;
 }
 
-/// Points of a strip at even distances along it, with both ends. So the time that a robot stood still has no
-/// weight.
+/// Points of a strip at even distances along it, with both ends, so that time at rest has no weight.
 std::vector<std::size_t> evenly_spaced(const std::vector<Point>& points, double length) {
   const double step = length / static_cast<double>(DrawnMarker::kMostPoints - 2);
   std::vector<std::size_t> kept = {0};
@@ -83,8 +82,7 @@ std::vector<std::size_t> kept_parts(const Marker& marker, std::size_t parts, std
   return kept;
 }
 
-/// Undefined values (a sum of opposite infinities) become 0. Values outside the range of float become its
-/// largest.
+/// Undefined values (a sum of opposite infinities) become 0, values outside float's range its largest.
 float to_float(double value) {
   constexpr double kMost = std::numeric_limits<float>::max();
   return std::isnan(value) ? 0 : static_cast<float>(std::clamp(value, -kMost, kMost));

@@ -53,8 +53,7 @@ struct Candidate {
   bool is_applied() const { return !course && !scoring && !mapping; }
 };
 
-/// Reads `{"course": "B", "scoring": {"address", "port", "token"}, "mapping": {...}}`; all members are
-/// optional.
+/// Reads `{"course": "B", "scoring": {"address", "port", "token"}, "mapping": {...}}`; all members optional.
 icd::Checked<Candidate> read_candidate(const std::string& body);
 
 /// Tests each endpoint step by step, without spending a report.

@@ -188,8 +188,7 @@ icd::Checked<SessionRoutes::Change> SessionRoutes::read_change(const std::string
   });
 }
 
-/// No secret is checked: while set-up is open, any client may set the password. The box shows when set-up
-/// closes.
+/// Checks no secret, because any client may set the password while set-up is open. The box shows its end.
 bool SessionRoutes::is_by_button(const Change& change) const {
   return keys_.set_up_open() && change.role == Role::Operator && change.current.empty() &&
          change.code.empty();

@@ -10,8 +10,7 @@
 
 namespace adit::api {
 
-/// A token's name ("scoring", "course.A.mapping"), its presence, and a warning about it; never the token
-/// itself.
+/// A token's name ("scoring", "course.A.mapping"), presence, and a warning about it; never the token itself.
 struct TokenRow {
   std::string name;
   bool set = false;

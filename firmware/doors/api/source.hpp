@@ -39,8 +39,7 @@ class CoveredMap {
   using Done = std::function<void(icd::Checked<picture::Coverage>)>;
 
   virtual ~CoveredMap() = default;
-  /// Counts the area if the map has changed, then calls `done`, perhaps at once. Error: too many requests are
-  /// queued.
+  /// Counts if the map has changed, then calls `done`, perhaps at once. Error: too many requests are queued.
   virtual void count(Done done) = 0;
 };
 
@@ -70,8 +69,7 @@ class Operator {
   virtual ~Operator() = default;
   /// Returns the number of the affected report. An error is a sentence.
   virtual std::expected<std::int64_t, std::string> decide(std::int64_t number, Action action) = 0;
-  /// Accepts the operator's report like a client's. Returns its number, or that of an equal report. An error
-  /// is a sentence.
+  /// Accepts a report like a client's. Returns its number or an equal one's. An error is a sentence.
   virtual std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report,
                                                           bool resubmit) = 0;
   /// Sends `to` instead of a held report. Returns the number of the new report. An error is a sentence.

@@ -77,7 +77,6 @@ class Spare {
   /// Opens the import with its code. Calls `done` later.
   virtual void open(const std::string& code, Done done) = 0;
   virtual icd::Checked<void> forget() = 0;
-  /// Starts the takeover.
   virtual icd::Checked<void> take_over() = 0;
 };
 

@@ -128,7 +128,6 @@ void StoredRuns::remove(const std::string& key, std::function<void(std::expected
 Archive::Archive(loop::Loop& loop, const std::string& state_folder)
     : loop_(loop), queue_(loop), writer_(loop), stored_(writer_, RunsFolder(state_folder)) {}
 
-/// Result of opening a run on disk.
 struct Archive::OpenedRun {
   Head head;
   std::expected<std::string, std::string> key = std::unexpected("no memory");

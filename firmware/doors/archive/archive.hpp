@@ -106,7 +106,6 @@ class Archive final : public api::KeptRuns {
 
  private:
   struct OpenedRun;
-  /// The data of a run on disk is being read.
   struct PendingRead {
     GoOn go_on;
     double moved = 0;  // clock steps meanwhile, in seconds

@@ -22,8 +22,7 @@ namespace adit::archive {
 /// Largest record: a tile that cannot be compressed.
 inline constexpr std::size_t kLargestRecord = std::size_t{72} << 10;
 
-/// A record in a file: a frame of store/, with a body (record_kinds.hpp) that must not be empty. It is valid
-/// at any place of any file.
+/// A record: a frame of store/ with a body, which must not be empty. Valid at any place of any file.
 std::string frame_record(std::string_view body);
 
 /// Calls `told` with the body of each complete record in `bytes`, in order. Skips damaged bytes up to the

@@ -26,8 +26,7 @@ struct Batch {
   bool is_empty() const { return tiles.empty() && beside.empty() && lines.empty() && facts.empty(); }
 };
 
-/// A sequence of files. Records are appended to the last file until it is full. Readers skip a torn end,
-/// which a crash leaves.
+/// Files, of which the last gets new records until it is full. Readers skip a torn end, which a crash leaves.
 class GrowingFile {
  public:
   /// `head`: the first record of each file.
@@ -91,8 +90,7 @@ std::expected<void, std::string> read_run(const std::string& folder, RunRecords&
 /// Whether the run has no files. Error: it cannot be read.
 std::expected<bool, std::string> is_blank(const std::string& folder);
 
-/// The directory of all runs, with a subdirectory for each, named by its key. Use from one thread; it blocks
-/// on the disk.
+/// The runs' directory, each run in a subdirectory named by its key. Use from one thread; blocks on the disk.
 class RunsFolder {
  public:
   static constexpr const char* kName = "runs";
@@ -113,8 +111,7 @@ class RunsFolder {
   std::string folder_of(const std::string& key) const { return path_ + '/' + key; }
   /// Whether the run has a directory. Error: unknown.
   std::expected<bool, std::string> has(const std::string& key) const;
-  /// std::nullopt if the run does not exist, or its files do not identify it. An error names the unreadable
-  /// file.
+  /// std::nullopt: no such run, or its files do not identify it. An error names the unreadable file.
   std::expected<std::optional<api::RunRow>, std::string> facts_of(const std::string& key) const;
   std::expected<void, std::string> remove(const std::string& key);
   /// Removes the oldest runs until all take at most `most` bytes, and at most half of the available space;

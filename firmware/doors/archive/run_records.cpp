@@ -201,8 +201,7 @@ void RunRecords::move_tiles(double seconds) {
   last_tile_ += seconds;
 }
 
-/// The first head identifies the run; files of other runs are ignored. A file with a damaged head counts like
-/// the file before it.
+/// The first head identifies the run. Ignores other runs' files. A damaged head counts like the one before.
 void RunRecords::add(const Head& head, std::uint64_t /*file*/) {
   if (!head_) head_ = head;
   is_ours_ = head_->run == head.run && head_->began == head.began;

@@ -75,8 +75,7 @@ Sample WriteQueue::add(Sample sample) {
   return sample;
 }
 
-/// Lines go with any write, and have room before tiles, because they are small and not replaced by newer
-/// ones.
+/// Lines go with any write, before tiles, because they are small and not replaced by newer ones.
 std::shared_ptr<Write> WriteQueue::next(const RunSnapshot& seen, const api::RunRow& row, std::size_t most,
                                         double tiles_of) {
   auto write = std::make_shared<Write>();

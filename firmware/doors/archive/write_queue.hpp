@@ -66,7 +66,6 @@ class Poses {
   std::map<std::string, api::TrackPose> by_robot_;  // last added
 };
 
-/// State of the present run.
 struct RunSnapshot {
   api::Time now = 0;
   double stamp = 0;  // `now` by the stamp clock

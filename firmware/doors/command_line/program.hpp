@@ -11,8 +11,7 @@ namespace adit::command_line {
 /// An error, or nullopt.
 using Wrong = std::optional<std::string>;
 
-/// A function that stores an option's value in `into`. The value is "" for an option without one. Plain
-/// pointers keep the many rows small.
+/// Stores an option's value, or "" if it takes none, in `into`. Plain pointers keep the many rows small.
 struct ValueSetter {
   Wrong (*take)(void* into, const std::string& value) = nullptr;
   void* into = nullptr;

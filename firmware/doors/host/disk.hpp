@@ -14,8 +14,7 @@ struct Disk {
 /// std::nullopt with errno: unknown.
 std::optional<Disk> disk_of(const std::string& folder);
 
-/// The wear that an eMMC reports (JESD84-B50 7.4: DEVICE_LIFE_TIME_EST_TYP_A and _B, PRE_EOL_INFO). 0: not
-/// reported.
+/// An eMMC's wear (JESD84-B50 7.4: DEVICE_LIFE_TIME_EST_TYP_A and _B, PRE_EOL_INFO). 0: not reported.
 struct Wear {
   unsigned life = 0;    // the higher estimate: 1 is up to 10 % of its life, 10 is 90 to 100 %, 11 is more
   unsigned spares = 0;  // use of its spare blocks: 1 is normal, 2 is 80 %, 3 is urgent

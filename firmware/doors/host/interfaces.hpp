@@ -33,8 +33,7 @@ struct Port {
   std::string duplex;            // "full", "half"; "": not known
 };
 
-/// `sys_class_net`: the kernel's list of interfaces. std::nullopt: no such interface. Error: it cannot be
-/// read.
+/// `sys_class_net`: the kernel's list of interfaces. std::nullopt: no such interface. Error: unreadable.
 std::expected<std::optional<Port>, std::string> port_in(const std::string& sys_class_net,
                                                         const std::string& interface);
 std::expected<std::optional<Port>, std::string> port(const std::string& interface);
@@ -68,15 +67,13 @@ std::vector<Route> routes();
 std::optional<bool> carrier_in(const std::string& sys_class_net, const std::string& interface);
 
 /// A socket that becomes readable when an interface comes, goes or changes, or its cable does (rtnetlink(7),
-/// RTMGRP_LINK). Reports a plugged cable at once, a pulled one within a second. Empty if the kernel gives no
-/// socket.
+/// RTMGRP_LINK): a plugged cable at once, a pulled one within a second. Empty if the kernel gives none.
 loop::FileDescriptor link_changes();
 
 /// The same, also for changes of IPv4 addresses (RTMGRP_IPV4_IFADDR).
 loop::FileDescriptor link_and_address_changes();
 
-/// Clears the socket. Read the interfaces afterwards. False: the socket is broken and reports no more
-/// changes.
+/// Clears the socket. Read the interfaces afterwards. False: broken; the socket reports no more changes.
 bool take_link_changes(const loop::FileDescriptor& changes);
 
 }  // namespace adit::host

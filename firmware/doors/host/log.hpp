@@ -20,7 +20,6 @@ std::string_view name_of(Level level);
 /// A field of a log record: name in lower_case ("report", "status"), value as text. Never a token.
 using Field = std::pair<std::string_view, std::string>;
 
-/// A stored record.
 struct Record {
   std::uint64_t seq = 0;  // number among all records of this process
   double at = 0;          // seconds since 1970, wall clock
@@ -51,7 +50,6 @@ void log_to_console(Level level, std::string_view message, std::initializer_list
 
 /// Removes these secrets from all later records, except from log_to_console().
 void keep_out_of_log(icd::Redaction redaction);
-/// The text with those secrets removed.
 std::string strip_secrets(std::string text);
 
 /// The stored records with a larger number, oldest first.
@@ -60,7 +58,6 @@ std::vector<Record> records_after(std::uint64_t after);
 /// Number of the last record, which counts all records.
 std::uint64_t last_record_number();
 
-/// The record as a line of the log.
 std::string line_of(const Record& record);
 
 /// Escapes a client's text, so that it cannot forge a line or control a terminal. Visible UTF-8 characters

@@ -22,8 +22,7 @@ struct Output {
 Output output_of(const std::vector<std::string>& words, std::chrono::milliseconds within,
                  const std::function<void(std::string_view)>& line = {});
 
-/// Runs a program for its effect alone. An error is one line with the program's name and the first line of
-/// its output.
+/// Runs a program for its effect. An error is one line: the program's name and the output's first line.
 std::expected<void, std::string> run_command(const std::vector<std::string>& words,
                                              std::chrono::milliseconds within);
 

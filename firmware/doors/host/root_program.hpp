@@ -85,8 +85,7 @@ class RootProgram {
   bool is_starting() const { return !status() && status_ && loop_.now() < started_until_; }
   /// Whether the program has a status file, readable or not, or is starting.
   bool runs_here() const { return status() || !status_ || is_starting(); }
-  /// Why there is no status, as a sentence: the program is starting, does not run here, or its status cannot
-  /// be read. "": there is a status.
+  /// Why there is no status, as a sentence (starting, not running here, unreadable); "": there is a status.
   std::string status_error() const {
     if (status()) return "";
     if (is_starting()) return name_ + " is starting, for at most 5 minutes: try again";
@@ -123,8 +122,7 @@ class RootProgram {
     if (!asked_ || !asked_->is_withdrawn) return "";
     return name_ + " did not read the request: restart the box; on a PC, see journalctl -u " + name_;
   }
-  /// Reads the status. Call each second. If the last request was not read in time, withdraws it and returns
-  /// true.
+  /// Reads the status. Call each second. True: withdrew the last request, which was not read in time.
   bool check() {
     read();
     if (!is_pending() || loop_.now() < asked_->at + within_) return false;

@@ -88,8 +88,7 @@ struct Secrets {
   std::string unread = "";  // why a file cannot be read, so that a token is missing; or ""
 
   icd::Redaction redaction() const;
-  /// Sentences by name: damaged tokens, and tokens of the Command Post with a length other than the ICD's
-  /// (4).
+  /// Sentences by name: damaged tokens, and Command Post tokens with a length other than the ICD's (4).
   std::map<std::string, std::string> token_warnings() const;
   std::optional<icd::BearerToken> token(std::string_view name) const {
     const auto found = tokens.find(name);

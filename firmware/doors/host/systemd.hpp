@@ -15,8 +15,7 @@ namespace adit::host {
 void notify_ready(const std::string& status);
 void notify_status(const std::string& status);
 void notify_stopping();
-/// Announces a new start of the process (restart_process()). systemd allows it the time of any start until
-/// notify_ready().
+/// Announces a new process start (restart_process()). It may take the time of any start until notify_ready().
 void notify_restarting();
 void notify_alive();                                      // WATCHDOG=1
 inline constexpr std::chrono::seconds kLongestStart{60};  // services/adit.service: TimeoutStartSec=

@@ -10,8 +10,7 @@
 
 namespace adit::host {
 
-/// A directory in which a less privileged user writes. Operations do not follow links, do not block, and
-/// limit sizes.
+/// A directory that a less privileged user writes. Operations follow no links, never block, and limit sizes.
 class UntrustedFolder {
  public:
   static constexpr std::size_t kLargest = 65536;
@@ -31,8 +30,7 @@ class UntrustedFolder {
   /// opened), frees its name: the rest is NAME.XXXXXX.
   std::expected<void, std::string> remove(const std::string& name);
 
-  /// The content of a file, or std::nullopt if it does not exist. Error: not a plain file, too large or
-  /// unreadable.
+  /// The content of a file; std::nullopt: no such file. Error: not a plain file, too large or unreadable.
   std::expected<std::optional<std::string>, std::string> read(const std::string& name) const;
 
   /// A subdirectory, or std::nullopt if it does not exist.

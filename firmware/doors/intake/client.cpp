@@ -105,8 +105,7 @@ std::uint64_t next_number() {
   return ++last;
 }
 
-/// The events that epoll would report. So a client that hung up while its connection was added does not hold
-/// a place.
+/// The events that epoll would report, so that a client that hung up while it was added holds no place.
 std::uint32_t state_of(int fd) {
   pollfd asked{.fd = fd, .events = POLLIN | POLLRDHUP, .revents = 0};
   static_assert(POLLIN == EPOLLIN && POLLHUP == EPOLLHUP && POLLERR == EPOLLERR && POLLRDHUP == EPOLLRDHUP);
@@ -331,8 +330,7 @@ void Client::resume() {
 }
 
 void Client::write_text(std::string_view text) {
-  // A few hundred bytes into an empty send buffer. A client that does not read loses the bytes that do not
-  // fit.
+  // A few hundred bytes into an empty send buffer. A client that does not read loses the rest.
   ::send(fd_, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
 }
 

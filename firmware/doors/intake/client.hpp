@@ -72,10 +72,8 @@ class Deadline {
   Deadline(Engine& engine, const Gate& gate) : engine_(engine), gate_(gate) {}
 
   loop::Instant at() const { return at_; }
-  /// The client has shown a token.
   bool is_authenticated() const { return authenticated_; }
   void set_authenticated(bool authenticated) { authenticated_ = authenticated; }
-  /// The client must send bytes within that time.
   void expect_bytes(std::chrono::milliseconds within);
   /// The client must read the last answer of its connection within 2 s.
   void expect_last_reading();
@@ -93,8 +91,7 @@ class Deadline {
   /// The client has closed its direction: libmicrohttpd has little time to read the last bytes.
   void on_client_end();
   bool has_client_ended() const { return ended_; }
-  /// Call this after at(). False: the client has more time, until the new at(). True: it is late, and has no
-  /// deadline any more.
+  /// After at(): true if late, then without a deadline; false if there is more time, until the new at().
   bool is_late();
 
  private:
@@ -138,11 +135,9 @@ class Client {
   Engine& engine() const { return engine_; }
   /// For the shares; nullopt if the connection is closing.
   std::optional<ConnectionInfo> held_share() const;
-  /// Closes the connection to make room for another one. If a request is not answered yet, the client gets a
-  /// 503.
+  /// Closes the connection to make room for another one. An unanswered request gets a 503.
   void give_way();
-  /// Both directions are closed, or the connection was reset. A client that has closed only its own direction
-  /// may still read.
+  /// Both directions are closed, or a reset came. A client that has closed one may still read.
   bool has_hung_up() const { return hung_up_; }
 
   /// Keeps libmicrohttpd from reading until the next request's head is whole and valid. Call this in its
@@ -168,8 +163,7 @@ class Client {
   /// Call this after deadline().at().
   void on_late();
 
-  /// Both have no effect if the connection is already in that state. suspend() must not be called while
-  /// libmicrohttpd adds the connection.
+  /// Idempotent. suspend() must not be called while libmicrohttpd adds the connection.
   void suspend();
   void resume();
   bool is_suspended() const { return suspended_; }
@@ -185,8 +179,7 @@ class Client {
   ConnectionInfo::Activity activity() const;
   void enter(Phase phase) { stage_ = {.phase = phase, .since = engine_.now()}; }
   void await_head();
-  /// RFC 9112 9.3. Also false if the answer is uncertain: a Connection field other than keep-alive, or
-  /// HTTP/1.0.
+  /// RFC 9112 9.3. Also false if uncertain: a Connection field other than keep-alive, or HTTP/1.0.
   bool client_keeps_connection() const;
   void on_events(std::uint32_t events);
   void check_head();

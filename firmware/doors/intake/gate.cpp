@@ -13,8 +13,7 @@ namespace {
 constexpr std::size_t kMostThrownAway = 256 * 1024;
 
 /// The kernel copies all unread bytes for each check. If they arrive in small pieces, the gate checks again
-/// only after a sixteenth more bytes or after this time. So at most 17 times the head is copied, plus 100
-/// copies a second.
+/// only after a sixteenth more bytes or after this time: at most 17 copies of the head, and 100 a second.
 constexpr std::size_t kWorthALook = 16;
 constexpr std::chrono::milliseconds kBetweenLooks(10);
 

@@ -37,15 +37,13 @@ class Gate {
   /// Checks the bytes in the socket. `at_once`: do not wait for more pieces.
   Finding check_bytes(loop::Instant now, bool at_once);
   loop::Instant next_check() const { return again_at_; }
-  /// The present head.
   const HeadChecker& head() const { return head_; }
 
   /// True if the next request to let in has a chunked body. Its head is the first one in the socket.
   bool next_is_chunked() const { return next_ < sound_.size() && !sound_[next_].framing.length; }
   /// A request begins. False: its head was not checked.
   bool admit_request();
-  /// Also reads the head from the socket, which libmicrohttpd then does not see. False: the head is not
-  /// there any more.
+  /// Also reads the head from the socket, unseen by libmicrohttpd. False: it is not there any more.
   bool consume_head();
   /// Call once the head was read from the socket. Acknowledges it at once if its body is still to come: a
   /// client that sends head and body in two writes waits for that (Nagle's algorithm), for 40 ms by default.
@@ -62,9 +60,8 @@ class Gate {
   Traffic traffic() const;
   /// The bytes that the kernel has received and that nothing has read. 0 if it does not say.
   std::size_t unread() const;
-  /// True if libmicrohttpd has read beyond the end of the last request that was let in, so that a part of the
-  /// next head would not be checked. Only for a request with a length that has been read. `received`: of
-  /// traffic(), just now.
+  /// True if libmicrohttpd has read beyond the last admitted request, so that a part of the next head would
+  /// not be checked. Only for a request with a length that has been read. `received`: of traffic(), just now.
   bool is_passed_by(std::uint64_t received) const;
 
   bool has_refused() const { return stage_ == Stage::Refused; }

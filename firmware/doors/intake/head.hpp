@@ -22,7 +22,6 @@ bool has_no_controls(std::string_view text);
 
 inline constexpr std::string_view kBlanks = " \t";  // RFC 9110 5.6.3
 
-/// A field of a head.
 struct FieldLine {
   std::string_view name, value;
 };
@@ -49,7 +48,6 @@ struct HeadParts {
 };
 HeadParts parts_of(std::string_view head);
 
-/// The head of a request.
 class Head final : public RequestHead {
  public:
   /// `text`: a head that HeadChecker has found whole. `target`: its target.

@@ -124,8 +124,7 @@ void HeadChecker::field(std::string_view so_far, std::string_view line) {
 }
 
 /// RFC 9110 5.3: a field that is not a list occurs once. A repeated equal value has one meaning for all
-/// readers, except in Content-Encoding (8.4): that is a list, and the repeated value would mean a second
-/// coding.
+/// readers, except in Content-Encoding (8.4), a list: there it would mean a second coding.
 void HeadChecker::check_single(std::string_view so_far, const FieldLine& field) {
   static constexpr std::array<std::string_view, 4> kNames = {"Content-Type", "Authorization", "Origin",
                                                              "Content-Encoding"};

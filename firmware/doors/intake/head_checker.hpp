@@ -39,7 +39,6 @@ class HeadChecker {
   /// For Refused: 400, 431 or 505.
   const icd::Refusal& refusal() const { return refusal_; }
   bool is_head_method() const { return is_head_method_; }
-  /// The request line names a URI of the ICD.
   bool names_icd_uri() const { return names_icd_uri_; }
 
  private:

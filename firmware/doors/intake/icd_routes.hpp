@@ -15,7 +15,6 @@
 
 namespace adit::intake {
 
-/// Settings of the team's side of the ICD.
 struct IcdOptions {
   std::vector<icd::BearerToken> tokens;  // each is valid
   bool asks_token = true;  // true: a client must show a token; if `tokens` is empty, each client gets 401

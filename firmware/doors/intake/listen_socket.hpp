@@ -39,8 +39,7 @@ struct ListenAddress {
 /// The error says why `fd` is no listening TCP socket over IPv4 or IPv6.
 std::expected<ListenAddress, std::string> bound_at(int fd);
 
-/// True if the socket is bound to an interface that was removed. Clients cannot reach it, even if a new
-/// interface has the same name.
+/// True if its interface was removed. Clients cannot reach it, even if a new interface has the same name.
 bool is_orphaned(int fd);
 
 /// True if connections to `listen` reach the socket. If `listen` names no interface, the socket may have any.

@@ -46,10 +46,8 @@ class MessageHandler {
  public:
   virtual ~MessageHandler() = default;
 
-  /// A map begins to arrive.
   virtual std::shared_ptr<MapArrival> begin_map() = 0;
-  /// Queues the message, or returns the refusal (a queue is full: 429). On success the sender gets 200
-  /// `null`.
+  /// Queues the message, or returns the refusal (queue full: 429). On success the sender gets 200 `null`.
   virtual icd::Checked<void> accept(icd::StateUpdate update, const Sender& sender) = 0;
   /// The same. Calls `done` on the loop, at once or later.
   virtual void accept(icd::MarkersUpdate update, const Sender& sender,
@@ -60,8 +58,7 @@ class MessageHandler {
                       std::shared_ptr<Responder> responder) = 0;
   virtual void status(const Sender& sender, std::shared_ptr<Responder> responder) = 0;
 
-  /// Records that a part of a message was dropped, and why. accept() follows. The sender does not learn of
-  /// it.
+  /// A part of a message was dropped: records `why`. accept() follows. The sender does not learn of it.
   virtual void record_dropped(icd::Uri uri, const Sender& sender, const std::string& why) = 0;
   /// Records that a message was rejected. The sender has the answer.
   virtual void on_rejected(icd::Uri uri, const Sender& sender, const icd::Refusal& refusal) = 0;

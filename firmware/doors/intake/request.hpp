@@ -66,7 +66,6 @@ class ReplyStream final : public Stream {
   std::size_t waiting() const override { return waiting_ - read_; }
   /// Ends the answer after the queued bytes.
   void end();
-  /// The client is gone.
   void detach() { client_ = nullptr; }
 
   /// The response for libmicrohttpd. Its connection is suspended while no bytes are queued.
@@ -83,7 +82,6 @@ class ReplyStream final : public Stream {
   bool ended_ = false;
 };
 
-/// What happens to the connection after a step of the request.
 enum class ConnectionAction : std::uint8_t { KeepOpen, Close };
 
 /// One request, from its head to the end of its answer. libmicrohttpd's callbacks drive it on one side, or
@@ -116,8 +114,7 @@ class Request final : public Responder, public FlowControl, public std::enable_s
   bool keeps_connection() const { return stage_ == Stage::Answering && !stream_ && !is_last_; }
   /// True if libmicrohttpd has no part of an answer yet.
   bool is_unanswered() const { return !is_answered() && (stage_ == Stage::Body || stage_ == Stage::Whole); }
-  /// A callback of the handler threw. Answers 500, unless an answer was being sent, and closes the
-  /// connection.
+  /// A callback of the handler threw. Answers 500, unless an answer is being sent, and closes the connection.
   ConnectionAction on_failed();
   /// libmicrohttpd has finished the request, in any way.
   void on_completed();
@@ -143,7 +140,6 @@ class Request final : public Responder, public FlowControl, public std::enable_s
   /// Discards a piece of a body that was answered before it was whole.
   ConnectionAction discard_body(std::size_t bytes);
   void consume_chunks(std::span<const std::uint8_t> piece);
-  /// Sends an answer that came before the body was whole.
   void send_early_answer();
   void refuse(Answer answer);
   /// Lets pages read an answer of the ICD's URIs, and that there is no such URI. Not the box's files and API.

@@ -27,8 +27,7 @@ namespace {
 /// request, so more memory would push small requests out of the processor's caches.
 constexpr std::size_t kConnectionMemory = 32 * 1024;
 
-/// Runs of libmicrohttpd per turn of the loop. It reads little of each body in a run, and a turn costs as
-/// much as a run.
+/// Runs of libmicrohttpd per turn of the loop. A run reads little of each body, and a turn costs as much.
 constexpr int kReads = 4;
 
 /// Connections that gave way and that libmicrohttpd has not ended yet. It accepts at most eleven at once.
@@ -156,8 +155,7 @@ MhdServer::~MhdServer() {
   MHD_stop_daemon(daemon_);
 }
 
-/// Closes the socket without shutdown(), because shutdown() of libmicrohttpd would also stop copies of the
-/// socket.
+/// Closes the socket without shutdown(), because that of libmicrohttpd would also stop copies of it.
 void MhdServer::stop_listening() {
   if (!std::exchange(listening_, false)) return;
   accepts_.reset();

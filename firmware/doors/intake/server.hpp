@@ -30,7 +30,6 @@ enum class CloseReason : std::uint8_t {
 };
 inline constexpr std::size_t kEndedKinds = 6;
 
-/// The address and the options of a server.
 struct Listen {
   std::string address;
   std::uint16_t port = 0;  // 0: any free port (Server::port())
@@ -79,8 +78,7 @@ struct Answer {
 class Stream {
  public:
   virtual ~Stream() = default;
-  /// Queues `bytes`. False if the client is gone or is kLag bytes behind. In the second case the connection
-  /// is closed.
+  /// Queues `bytes`. False if the client is gone, or is kLag bytes behind and is then disconnected.
   virtual bool send(std::string_view bytes) = 0;
   /// Queues `bytes` in place of all queued pieces, except a piece that was sent in part.
   virtual bool send_instead(std::string_view bytes) = 0;
@@ -115,7 +113,6 @@ class PassingResponder : public Responder {
   const std::shared_ptr<Responder> inner_;
 };
 
-/// Receives the body of one request.
 class BodySink {
  public:
   virtual ~BodySink() = default;
@@ -135,7 +132,6 @@ class FlowControl {
   virtual void resume() = 0;
 };
 
-/// The credentials of a request.
 enum class Credentials : std::uint8_t {
   Nothing,     // unauthenticated
   WrongToken,  // a wrong token, or no token although it is required
@@ -143,7 +139,6 @@ enum class Credentials : std::uint8_t {
   Enough,      // a session or a known device's cookie, or the request needs no token
 };
 
-/// Handles requests.
 class Handler {
  public:
   virtual ~Handler() = default;
@@ -173,7 +168,6 @@ class Server {
 
   virtual std::uint16_t port() const = 0;
   virtual std::size_t connections() const = 0;
-  /// Connections that have shown no token.
   virtual std::size_t unauthenticated_connections() const = 0;
   /// Accepts no new connections; requests in flight continue. A copy of the socket still listens, and clients
   /// that connect wait for its owner.

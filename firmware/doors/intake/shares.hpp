@@ -19,7 +19,6 @@ struct Shares {
   static Shares split(std::uint32_t connections, std::uint32_t of_address);
 };
 
-/// One connection, as the shares see it.
 struct ConnectionInfo {
   enum class Activity : std::uint8_t {
     Fresh,    // accepted, and its bytes were not checked yet

@@ -46,7 +46,7 @@ namespace {
 
 using TokenCheck = TokenGuesses::TokenCheck;
 
-/// Delays the answer. Owned by its Late, which lives as long as the request.
+/// Delays the answer. Owned by its DelayedSink, which lives as long as the request.
 class DelayedResponder final : public PassingResponder {
  public:
   DelayedResponder(loop::Loop& loop, std::shared_ptr<Responder> responder, std::chrono::milliseconds late)

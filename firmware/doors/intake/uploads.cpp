@@ -415,8 +415,7 @@ class MarkersUpload::State final : public LoopPart, public std::enable_shared_fr
   void end_turn() {
     if (const auto turns = turns_.lock()) turns->end();
   }
-  /// Gives the accepted markers to the message handler. If the message handler accepts them, the answer is
-  /// about the rejected ones.
+  /// Passes on the accepted markers. If the handler accepts them, the answer is about the rejected ones.
   void on_decoded(Parts parts) {
     abandon();
     if (!parts) return context_.refuse(parts.error());

@@ -210,7 +210,6 @@ class WorkerUpload : public Upload {
     bool over_ = false;  // answered, the client is gone, or the message handler has it
 
    private:
-    /// Frees the held parts of the body.
     virtual void release_body() = 0;
   };
 
@@ -250,8 +249,7 @@ class SmallUpload final : public Upload {
 
  private:
   void give_to_handler(const codec::Document& document);
-  /// Gives the accepted parts to the message handler. If the message handler accepts them, the answer is
-  /// about the rejected parts.
+  /// Passes on the accepted parts. If the handler accepts them, the answer is about the rejected ones.
   void accept_state(const codec::Document& document);
   void accept_report(const codec::Document& document);
 

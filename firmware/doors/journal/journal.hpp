@@ -101,8 +101,7 @@ class HandoverState {
   const std::map<icd::Uri, icd::Stamp>& stamps() const { return stamps_; }
   /// queues::Canvases::PostedAreas. std::nullopt: not recorded.
   const std::optional<std::map<std::string, queues::Extent>>& grids() const { return grids_; }
-  /// Robots whose present pose is not delivered. Delivered poses are dropped, because the next process may
-  /// serve another Command Post.
+  /// Robots with an undelivered pose. Delivered ones are dropped, because the Command Post may change.
   const std::map<icd::RobotName, Robot>& robots() const { return robots_; }
   /// By robot. Empty after a boot.
   const std::map<std::string, Heard>& heard_by_robot() const { return heard_; }
@@ -147,7 +146,7 @@ std::string names_of(std::span<const icd::Marker> markers);
 
 }  // namespace adit::journal
 
-// The structs in records. All other records are store::bytes_of() what Carried reads them as.
+// The structs in records. All other records are store::bytes_of() what HandoverState reads them as.
 namespace adit {
 
 template <>
@@ -223,8 +222,7 @@ class Journal {
   static constexpr store::LogOptions kKeeping{store::kInMemory, 0, false};
   /// Most bytes of unwritten records; more are lost.
   static constexpr std::size_t kMostUnsaid = 8u << 20;
-  /// Least size at which a snapshot is made. A snapshot is made when the file is larger than this and than
-  /// the last snapshot.
+  /// Least size for a snapshot, which is made when the file exceeds this and the last snapshot.
   static constexpr std::size_t kLeastTurn = 1u << 20;
 
   Journal(loop::Loop& loop, std::string folder);
@@ -291,8 +289,7 @@ class Journal {
   };
   Kept open();
   void note(RecordKind kind, std::string said);
-  /// Records that sent data is queued again. If the record of the sending is still unwritten, removes that
-  /// record.
+  /// Records that sent data is queued again, or removes the record of the sending if it is still unwritten.
   void record_return(RecordKind sent, RecordKind back);
   Kept append(RecordKind kind, std::string_view said);
   Kept append_pending();

@@ -22,8 +22,7 @@ struct MemberPath {
 
 }  // namespace ledger
 
-// The members of reports and runs. Append new ones: earlier versions preserve them, and records of earlier
-// versions lack them.
+// The members of reports and runs. Append new ones, which earlier versions preserve and their records lack.
 
 template <>
 inline constexpr auto store::kMembers<dispatch::Report> = [] {

@@ -26,8 +26,7 @@ enum class RecordKind : std::uint8_t {
 /// The bytes of a report or run. `more`: later members, written by a later version.
 std::string to_bytes(const dispatch::Report& report, std::string_view more = {});
 std::string to_bytes(const dispatch::Run& run, std::string_view more = {});
-/// std::nullopt if a member is missing or the number is below 1. An unknown state becomes InDoubt, because
-/// only the operator can decide on it.
+/// std::nullopt: a member is missing or the number below 1. An unknown state is InDoubt, for the operator.
 std::optional<dispatch::Report> report_in(std::string_view record);
 std::optional<dispatch::Run> run_in(std::string_view record);
 /// For people and scripts.

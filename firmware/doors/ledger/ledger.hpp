@@ -86,8 +86,7 @@ class Ledger {
   /// `known` is gone, each report that may have been sent becomes in doubt, and damage() says so. If the
   /// directory cannot be written, reports can be read, refusal() has the reason, and a later write may
   /// succeed. Error: unreadable, locked by another process, or from a later version; no file is changed.
-  /// `memory`: a file in memory that always has known_facts(), so that an older copy of the ledger is damage,
-  /// too;
+  /// `memory`: a file in memory that always has known_facts(), so that an older copy of the ledger is damage;
   /// "": none.
   static Result<Ledger> open(const std::string& state, const LedgerFacts& known = {},
                              const std::string& memory = "");
@@ -120,8 +119,7 @@ class Ledger {
   Result<std::string> copy() const;
   /// Whether the bytes are from copy().
   static bool is_copy(const std::string& copy) { return steps_record_in(copy).has_value(); }
-  /// Takes over another box's reports and runs by dispatch::take_over(), with each report's history, as one
-  /// record.
+  /// Takes over another box's reports and runs by dispatch::take_over(), with all histories, as one record.
   Result<void> take_over(const std::string& copy, const dispatch::Handover& handover);
 
   /// A sentence about damage found by open(), or "".

@@ -28,8 +28,7 @@ void end_by_uncaught() noexcept;
 /// counted. 0: they are.
 int count_faults(const char* file) noexcept;
 
-/// While it exists, a fault of the thread that made it is counted in another file (count_faults()). One at a
-/// time for a thread.
+/// While it exists, faults of its thread count in another file (count_faults()). One at a time per thread.
 class FaultCounter {
  public:
   /// If `file` does not exist, faults of this thread are counted as before.

@@ -25,8 +25,7 @@ constexpr std::uint64_t kAccuracyUsec = 1000;
 constexpr std::uint64_t kNever = UINT64_MAX;
 constexpr std::chrono::milliseconds kReadTogether{1};  // the largest time between reading two clocks
 
-/// Ends the process if sd-event fails (no memory, or a descriptor that cannot be watched). systemd restarts
-/// it.
+/// Ends the process if sd-event fails (no memory, an unwatchable descriptor). systemd restarts it.
 void require_success(int result, const char* doing) {
   if (result >= 0) return;
   std::fprintf(stderr, "event loop: %s: %s\n", doing, std::strerror(-result));
@@ -56,8 +55,7 @@ struct Source::State : std::enable_shared_from_this<Source::State> {
 
   void end() { source = sd_event_source_disable_unref(source); }
 
-  /// Keeps the callback alive while it runs, because it may destroy its own Source. An exception ends the
-  /// process.
+  /// Keeps the callback alive, because it may destroy its own Source. An exception ends the process.
   static int run(void* userdata, std::uint32_t events) noexcept {
     const auto alive = static_cast<State*>(userdata)->weak_from_this().lock();
     alive->call(events);

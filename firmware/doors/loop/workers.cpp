@@ -23,8 +23,7 @@ unsigned threads_for(unsigned asked) {
   return std::max(std::thread::hardware_concurrency(), 2u) - 1;
 }
 
-/// Lowers the calling thread's priority below the loop's and the writer's. If the system does not allow it,
-/// the thread keeps its priority.
+/// Lowers the calling thread's priority below the loop's and the writer's, if the system allows it.
 void lower_priority() {
   constexpr int kNice = 10;
   const auto thread = static_cast<id_t>(gettid());
@@ -137,7 +136,6 @@ class Workers::Impl {
             held.get()};
   }
 
-  /// The state of a worker.
   struct WorkerState {
     std::uint64_t answered = 0;  // the last ask() that it has seen
     bool at_work = false;

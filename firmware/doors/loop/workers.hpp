@@ -14,7 +14,6 @@
 
 namespace adit::loop {
 
-/// The priority of a job.
 enum class Urgency : std::uint8_t {
   OnTheWay,  // a message or its answer is delayed until the job is done
   CanWait,   // the result is only shown, or memory is freed
@@ -48,8 +47,7 @@ class JobQueue {
     }
   }
 
-  /// The next job for an idle worker. nullopt if no job is queued, or if only CanWait jobs are queued and
-  /// enough workers run such jobs.
+  /// The next job for an idle worker. nullopt: none, or only CanWait jobs while enough workers run such jobs.
   std::optional<NextJob> pop(Instant now) {
     const bool may_wait = !can_wait_.empty() && at_work_ < most_that_can_wait_;
     if (may_wait && (on_the_way_.empty() || is_overdue(now))) {
@@ -77,8 +75,7 @@ class JobQueue {
     last_ended_ = now;
   }
 
-  /// Moves all queued jobs to `other`, which must be empty, so that the caller can free them outside its
-  /// lock.
+  /// Moves all queued jobs to the empty `other`, so that the caller can free them outside its lock.
   void hand_over_to(JobQueue& other) {
     std::swap(other.on_the_way_, on_the_way_);
     std::swap(other.can_wait_, can_wait_);
@@ -128,8 +125,7 @@ class Workers {
   /// The same with `done` in place of `failed`, for work whose result is a failure until `work` sets it.
   void submit(Urgency urgency, std::function<void()> work, std::function<void()> done);
 
-  /// Runs queued OnTheWay jobs on this thread. Only for `work`: a long CanWait job calls it from time to
-  /// time.
+  /// Runs queued OnTheWay jobs on this thread. Only for `work`: a long CanWait job calls it now and then.
   void give_way();
 
   /// Asks each worker for a sign of life. Workers answer between jobs.

@@ -32,8 +32,7 @@ class Button {
   Button(bool pressed, Instant now)
       : level_(pressed), since_(now), phase_(pressed ? Phase::Ignored : Phase::Idle) {}
 
-  /// Call this with the line's level whenever it may have changed. A release that is seen late is never a
-  /// reset.
+  /// Call this with the line's level whenever it may have changed. A release seen late is never a reset.
   std::optional<Press> level(bool pressed, Instant now);
   /// Call this after level(), and at next(). Handles the passing of time.
   std::optional<Press> advance(Instant now);

@@ -28,7 +28,6 @@ std::expected<std::unique_ptr<ButtonLine>, std::string> reopened_button(
     std::function<std::expected<std::unique_ptr<ButtonLine>, std::string>()> open,
     std::chrono::milliseconds pace = kReopen);
 
-/// The lights and the button of a panel.
 struct PanelDevices {
   std::unique_ptr<Lines> lines;        // null: there are none
   std::unique_ptr<ButtonLine> button;  // null: there is none

@@ -18,12 +18,10 @@ class Lines {
   virtual ~Lines() = default;
   /// Sets all lights. An error says why some lights may be wrong; Adit continues: painter.hpp.
   virtual std::expected<void, std::string> set(const Lit& lit) = 0;
-  /// True if the lights must be set at least once a second while the program is well, so that the holder of
-  /// the lines knows.
+  /// True if a well program must set the lights at least once a second, so that the lines' holder knows.
   virtual bool is_watched() const { return false; }
 };
 
-/// The line of the button.
 class ButtonLine {
  public:
   virtual ~ButtonLine() = default;
@@ -47,8 +45,7 @@ std::expected<std::unique_ptr<ButtonLine>, std::string> open_gpio_button(const s
 /// libgpiod's version.
 std::string gpiod_version();
 
-/// A panel without GPIO. Its state is in `file` ("health on\n..."), which is replaced atomically at each
-/// change.
+/// A panel without GPIO. Its state is in `file` ("health on\n..."), replaced atomically at each change.
 std::unique_ptr<Lines> make_simulated_lines(std::string file);
 /// The simulated button: a new FIFO for this user only. It accepts the lines "press" and "release" and
 /// ignores others. Replaces a file at `fifo`.

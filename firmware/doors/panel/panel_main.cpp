@@ -16,7 +16,6 @@
 
 namespace adit::panel {
 
-/// adit-panel's command line.
 struct PanelOptions {
   std::string board, socket, simulated;
   bool help = false, version = false;
@@ -57,8 +56,7 @@ void complain(const std::string& sentence) {
   std::fprintf(stderr, "adit-panel: %s\n", sentence.c_str());
 }
 
-/// nullopt if there is no file, or if it names no panel or is wrong. A wrong file is logged. An error means
-/// that the file cannot be read.
+/// nullopt: no file, or it names no panel or is wrong, which is logged. Error: the file cannot be read.
 std::expected<std::optional<settings::Panel>, std::string> panel_of_board(const std::string& file) {
   const loop::FileDescriptor fd = loop::open_regular(file, O_RDONLY);
   if (!fd && errno == ENOENT) return std::nullopt;  // also if `file` is ""

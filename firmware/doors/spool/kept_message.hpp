@@ -18,8 +18,7 @@
 
 namespace adit::spool {
 
-/// A file's bytes in memory. A mapped file on a tmpfs takes no memory of its own. `bytes` is valid while
-/// `owner` lives.
+/// A file's bytes in memory, valid while `owner` lives. A mapped file on a tmpfs takes no memory of its own.
 struct MappedFile {
   std::shared_ptr<const void> owner;
   std::span<const std::uint8_t> bytes;
@@ -27,8 +26,7 @@ struct MappedFile {
 /// The bytes of a file, or errno. A small file is copied, which is faster than a mapping.
 std::expected<MappedFile, int> map_file(const std::string& path);
 std::string_view text_in(const MappedFile& file);
-/// The refusal for a file that cannot be read: 503, or 422 if the file does not exist, because its content is
-/// lost.
+/// The refusal for an unreadable file: 503, or 422 if it does not exist, because its content is lost.
 icd::Refusal unreadable(const std::string& path, int error);
 
 /// An unfinished file for this user alone. It has a temporary name until name(); the destructor removes a
@@ -81,7 +79,7 @@ class MapFile {
   bool is_prefix_of(const icd::ChunkedBytes& data) const;
 
   /// Writes the rest of `map`, renames the file to `path`, and replaces the map's data by the mapped file.
-  /// Call only if begins(map.data.bytes), or if no data has been appended.
+  /// Call only if is_prefix_of(map.data.bytes), or if no data has been appended.
   int finish(icd::MapUpdate& map, const std::string& path);
 
   /// Reads a file that finish() made and maps its data unread; codec::check_data() checks the data. Errors:

@@ -78,10 +78,9 @@ class Spool {
   /// A sentence that names maps that read() set aside, and why; or "".
   const std::string& put_aside() const { return put_aside_; }
 
-  /// Reads all stored maps. A damaged file is logged and set aside; so is a file that can never be read
-  /// (wrong owner, no regular file) if others can. If a file cannot be read now, all files stay, the result
-  /// is empty, and keep() rejects every map until the next start, because a newer map must not precede an
-  /// older one.
+  /// Reads all stored maps. A damaged file is logged and set aside; so is one that can never be read (wrong
+  /// owner, no regular file) if others can. If a file cannot be read now, all files stay, the result is
+  /// empty, and keep() rejects every map until the next start, because none may precede an older one.
   KeptMaps read();
   /// Why read() could not read a file, or "".
   const std::string& unread() const { return unread_; }

@@ -82,8 +82,7 @@ class Contents {
   std::uint64_t number = 0;     // highest file number
   std::optional<FileName> log;  // the last log, whose frames end at `end`
   std::size_t end = 0, size = 0;
-  /// Frames that may be unsynced or have a damaged copy, and the header of the last log. They are written
-  /// again at the start.
+  /// Frames to write again at the start: maybe unsynced, or with a damaged copy; and the last log's header.
   struct Rewrite {
     FileName file;
     std::size_t offset;

@@ -149,8 +149,7 @@ std::string bytes_of(const Of&... values) {
   return put.finish();
 }
 
-/// Reads values that bytes_of() wrote. False, with undefined values, if one is missing or wrong, or bytes are
-/// left.
+/// Reads values of bytes_of(). False, with undefined values, if one is missing or wrong, or bytes are left.
 template <class ReaderType = Reader, class... Of>
 bool read(std::string_view bytes, Of&... values) {
   ReaderType take(bytes);
@@ -197,8 +196,7 @@ struct ParsedFrame {
 /// The frame at `offset`, or std::nullopt if it is absent or damaged.
 std::optional<ParsedFrame> parse(std::string_view file, std::size_t offset, std::uint64_t salt);
 
-/// The first place for a frame from `offset` on, a multiple of layout.align; the file's size if there is
-/// none.
+/// The first place for a frame from `offset` on, a multiple of layout.align; else the file's size.
 std::size_t next_candidate(std::string_view file, std::size_t offset, const Layout& layout);
 
 /// A file with one value, its kMembers in a frame with salt 0: no part of it comes from a peer.

@@ -18,8 +18,7 @@ namespace {
 constexpr std::size_t kLeftFree = 256u << 10;  // bytes of the disk, for small files such as settings
 constexpr std::size_t kPiece = 256u << 10;     // bytes of zeros for one sync, so that others wait briefly
 
-/// Writes `size` zeros to a new file and syncs them. Returns 0 or errno. Checks the free space first, so that
-/// it leaves kLeftFree.
+/// Writes `size` zeros to a new file and syncs them, if that leaves kLeftFree. Returns 0 or errno.
 int write_zeros(int fd, std::size_t size, const std::atomic<bool>& enough) {
   struct statvfs disk{};
   if (::fstatvfs(fd, &disk) == 0 && std::uint64_t{disk.f_bavail} * disk.f_frsize < size + kLeftFree)

@@ -72,8 +72,7 @@ class Log {
   std::uint64_t last_ = 0, durable_ = 0, process_ = 0;
   std::uint64_t highest_ = 0;             // highest tried file number
   std::vector<UnsyncedRecord> unsynced_;  // records above durable_
-  /// There is no file, or a sync of it has failed, so the kernel may have dropped data. The next append
-  /// starts a new file.
+  /// No file, or a sync failed and the kernel may have dropped data. The next append starts a new file.
   bool is_dead_ = true;
 };
 

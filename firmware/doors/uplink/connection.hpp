@@ -89,8 +89,7 @@ class Connection {
   /// `server`: at this endpoint; null: other connections to it are unknown.
   Connection(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token,
              std::shared_ptr<Server> server = nullptr);
-  /// A second connection to the same endpoint that shares the measurements of the link. Only one of them may
-  /// have bytes to send at a time.
+  /// A second connection to this endpoint with the same measurements. Only one may have bytes to send.
   std::unique_ptr<Connection> another() const;
   ~Connection();
   Connection(const Connection&) = delete;
@@ -106,8 +105,7 @@ class Connection {
   }
   /// Closes the connection. Requires !busy().
   void close();
-  /// Closes the connection by a reset. `done` of the request in flight is not called, and its answer is not
-  /// read.
+  /// Closes the connection by a reset. The `done` in flight is not called, and its answer is not read.
   void give_up();
 
   /// Sends a request. Requires !busy(). `done` is called once, from the loop and never within send(). It may
@@ -124,8 +122,7 @@ class Connection {
 
   /// Bytes of the present or last request, with its head, that the kernel has accepted.
   std::size_t sent_bytes() const { return exchange_ ? exchange_->sent_bytes() : sent_; }
-  /// Bytes per second that the link delivered during the last requests, at most Endpoint::bytes_per_second; 0
-  /// if it is not paced.
+  /// Bytes per second that the link delivered lately, at most Endpoint::bytes_per_second; 0: not paced.
   std::uint64_t delivers() const { return pace_->delivery_rate(); }
 
  private:
@@ -319,7 +316,6 @@ class Connections {
   void send(Request request, std::function<void(Outcome)> done);
   bool busy() const { return first_.busy() || (second_ && second_->busy()); }
 
-  /// Connection::give_up() of the last request, if a request is in flight.
   void give_up() {
     if (busy()) latest_->give_up();
   }
@@ -333,7 +329,6 @@ class Connections {
 
   /// The server gets one connection at a time, and no request ahead.
   bool is_serial() const { return server_->is_serial(); }
-  /// Server::is_free()
   bool is_free() const { return server_->is_free(); }
   /// Server::claim(). Call before each send().
   bool claim_turn(bool goes_first) { return server_->claim(turn_, goes_first); }

@@ -27,8 +27,7 @@ namespace {
 
 namespace http = boost::beast::http;
 
-/// The body of an answer, kept as it arrives. Beast's string_body reserves the announced length before it
-/// checks the limit.
+/// Keeps a body as it arrives. Beast's string_body reserves the announced length before it checks the limit.
 struct BoundedBody {
   struct value_type {
     std::string text;
@@ -378,8 +377,7 @@ Exchange::Answer Exchange::read(int fd) {
     if (error == EINTR) continue;
     if (error == EAGAIN || error == EWOULDBLOCK) return Answer::Waiting;
     if (error != 0) return on_lost(std::strerror(error));
-    // The failed write has consumed the socket's error, so this end may be a reset and does not prove the end
-    // of an answer without a length.
+    // The write consumed the socket's error, so this may be a reset and ends no answer without a length.
     if (*got == 0 && write_broken_) return on_lost("the peer closed the connection during the request");
     if (is_early_) return on_lost(*got == 0 ? "it closed the connection" : "it sent bytes after the answer");
     const auto state = *got == 0 ? parser_.feed_end() : parser_.feed({bytes.data(), *got});

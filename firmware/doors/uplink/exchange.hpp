@@ -55,8 +55,7 @@ struct Answered {
   SendTimes sent = {};
   loop::Instant began = {};  // when the first byte was given to the kernel
 
-  /// The server redirects to the other form of the path and has not processed the request (RFC 9110 15.4.8,
-  /// 15.4.9).
+  /// Redirects to the other form of the path without processing the request (RFC 9110 15.4.8, 15.4.9).
   bool is_unprocessed() const { return wants_slash && (status == 307 || status == 308); }
 };
 /// No byte of the request was given to the kernel. A retry is safe.
@@ -123,14 +122,12 @@ class AnswerParser {
 std::optional<bool> redirects_to_slash(int status, std::string_view location, std::string_view authority,
                                        std::string_view target);
 
-/// Sends one request, parses its answer, and measures how long the peer is silent. The caller owns the
-/// socket.
+/// Sends one request, parses its answer, and measures the peer's silence. The caller owns the socket.
 class Exchange {
  public:
   Exchange(const Endpoint& endpoint, const icd::BearerToken& token, Request request);
 
-  /// Writes one portion of the bytes that may leave. Returns 0 or an errno. After an error no more is
-  /// written.
+  /// Writes one portion of the bytes that may leave. Returns 0 or an errno; then no more is written.
   int write(int fd);
   /// Call this right after the first write().
   void on_first_write(loop::Instant now) { first_left_ = now; }

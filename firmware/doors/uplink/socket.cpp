@@ -63,8 +63,7 @@ int set(int fd, int level, int option, const T& value) {
   return ::setsockopt(fd, level, option, &value, sizeof value) == 0 ? 0 : errno;
 }
 
-/// A quarter of a second of a slow pace, so that progress is seen often enough to distinguish slow from
-/// silent.
+/// A quarter of a second of a slow pace, so that progress is seen often enough to tell slow from silent.
 int most_unsent(std::uint64_t bytes_per_second) {
   if (bytes_per_second == 0) return static_cast<int>(kMostUnsent);
   return static_cast<int>(std::clamp<std::uint64_t>(bytes_per_second / 4, 4096, kMostUnsentPaced));

@@ -14,7 +14,6 @@
 
 namespace adit::uplink {
 
-/// The address of an endpoint, and the options of a connection to it.
 struct Endpoint {
   std::string address;  // IPv4 or IPv6, numeric
   std::uint16_t port = 0;
@@ -46,8 +45,7 @@ std::expected<std::size_t, int> write(int fd, std::span<const iovec> pieces);
 std::expected<std::size_t, int> write_evenly(int fd, std::span<const iovec> pieces,
                                              std::uint64_t bytes_per_second);
 
-/// Reads into `bytes`. Returns the number of bytes, 0 after the peer has closed its direction, or an errno
-/// (EAGAIN: no bytes yet).
+/// Returns the number of bytes read, 0 after the peer closed its direction, or an errno (EAGAIN: none yet).
 std::expected<std::size_t, int> read(int fd, std::span<char> bytes);
 
 /// The result of connecting: 0 or an errno.
@@ -77,8 +75,7 @@ Transmission transmission(int fd);
 /// Sets SO_MAX_PACING_RATE: bytes per second, > 0.
 void set_pace(int fd, std::uint64_t bytes_per_second);
 
-/// Bytes that the kernel holds and the peer has not acknowledged. If the kernel does not answer, more than
-/// were sent.
+/// Unacknowledged bytes in the kernel; more than were sent if the kernel does not answer.
 std::size_t unacknowledged_bytes(int fd);
 
 }  // namespace adit::uplink

@@ -95,16 +95,14 @@ class Channel {
   /// If the next way has another address or token, ends requests in flight as InDoubt. Only for messages that
   /// may be sent twice.
   void give_up();
-  /// Call before each request. True: the address or the token is another from now on, and earlier answers
-  /// came from the old endpoint.
+  /// Call before each request. True: address or token changed; earlier answers came from the old endpoint.
   bool turns();
 
   bool has_token() const { return connection_.has_value(); }
   /// "10.100.1.200:8000"
   const std::string& address() const { return address_; }
   /// Requires has_token(), and !busy() or can_go_ahead(). `content_type` is empty without a body.
-  /// `is_on_trial`: this message failed alone before, so an answer that rejects it says nothing about the
-  /// endpoint.
+  /// `is_on_trial`: this message failed alone before, so a rejection says nothing about the endpoint.
   void send(icd::Uri uri, std::string_view content_type, icd::ChunkedBytes body,
             std::function<void(uplink::Outcome)> done, loop::Instant last_byte_not_before = {},
             bool is_on_trial = false);
@@ -115,7 +113,6 @@ class Channel {
   void preconnect() {
     if (!next_ && connection_) connection_->preconnect();
   }
-  /// uplink::Connections::is_serial()
   bool is_serial() const { return connection_ && connection_->is_serial(); }
   /// False: the Command Post serves one connection at a time, and serves one.
   bool is_free() const { return !connection_ || connection_->is_free(); }
@@ -126,7 +123,6 @@ class Channel {
   /// uplink::Connections::has_arrived()
   std::optional<uplink::SendTimes> has_arrived() const;
   bool is_connected() const { return connection_ && connection_->is_connected(); }
-  /// uplink::Connection::retry_now()
   void retry_now() {
     if (connection_) connection_->retry_now();
   }

@@ -100,8 +100,7 @@ class Clocks {
   Clocks(loop::Loop& loop, journal::Journal& journal, const std::string& state_folder)
       : loop_(loop), journal_(journal), floor_(state_folder), kept_(floor_.read()) {}
 
-  /// Why the bound of stamps is unreadable, or "". Then send no stamps. The file is left for the next
-  /// process.
+  /// Why the bound of stamps is unreadable, or "". Then send no stamps. The next process gets the file.
   std::string unread() const { return kept_ ? "" : "the last time stamps cannot be read: " + kept_.error(); }
   /// Why stamps may have gone back at this start, or "".
   const std::string& damage() const { return damage_; }
@@ -121,8 +120,7 @@ class Clocks {
   /// True if this box may have sent messages before this process.
   bool has_run_before() const { return ran_before_; }
 
-  /// The present time of day of a stamp in the ledger. Stamps of earlier boots and of another box stay as
-  /// written.
+  /// The present time of day of a stamp in the ledger. Stamps of earlier boots and other boxes are unchanged.
   double time_of_day(double stamp) const;
 
   /// Convert stamps to the stamp clock, and journal the sender's offsets.

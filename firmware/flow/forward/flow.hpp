@@ -139,8 +139,7 @@ struct Tokens {
   std::string strike_from(std::string sentence) const;
 };
 
-/// The team's messages from intake (this is its MessageHandler) to uplink, sent by Scoring, Maps and
-/// Telemetry.
+/// The team's messages from intake (as its MessageHandler) to uplink, sent by Scoring, Maps and Telemetry.
 class Flow final : public intake::MessageHandler, public api::Operator {
  public:
   /// Directories of messages, below the runtime directory.
@@ -179,7 +178,6 @@ class Flow final : public intake::MessageHandler, public api::Operator {
   void tick(loop::Writer& disk);
   KnownTimes known_times() const;
   const Clocks& clocks() const { return clocks_; }
-  /// Clocks::set_known_time().
   void set_known_time(double time) { clocks_.set_known_time(time); }
   /// The time of day was set ahead by `seconds`.
   void on_wall_set(double seconds);
@@ -198,8 +196,7 @@ class Flow final : public intake::MessageHandler, public api::Operator {
   void record_dropped(icd::Uri uri, const intake::Sender& sender, const std::string& why) override;
   void on_rejected(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& callbacks) override;
 
-  /// When the operator's test may send one status request or state, as a turn of the run's pace. nullopt: not
-  /// before `latest`.
+  /// When the operator's test may send, as a turn of the pace of `uri`. nullopt: not before `latest`.
   std::optional<loop::Instant> claim(icd::Uri uri, loop::Instant latest) {
     return pace_of(uri).claim(loop_.now(), latest);
   }

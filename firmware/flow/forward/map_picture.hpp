@@ -49,7 +49,6 @@ class FineTiles final : public api::FineMap {
     picture::TileIndex over;
     friend auto operator<=>(const BlockKey&, const BlockKey&) = default;
   };
-  /// The source of a block.
   struct BlockSource {
     std::uint64_t newest = 0;
     picture::Tile base;

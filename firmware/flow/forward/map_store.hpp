@@ -81,8 +81,7 @@ class MapStore {
   /// Closes the file of a map that is not accepted; null: none.
   void discard(std::shared_ptr<spool::MapFile> file);
   void forget(std::span<const std::uint64_t> numbers);
-  /// Deletes maps that a newer one replaced, once its bounds are stored. If they cannot be stored, the files
-  /// stay until the newer map is delivered.
+  /// Deletes replaced maps once the newer one's bounds are stored, or else once the newer one is delivered.
   void forget(queues::ReplacedMaps replaced);
   /// Renames the damaged files.
   void set_aside(std::vector<DamagedMap> damaged);
@@ -119,7 +118,6 @@ class MapStore {
   std::set<std::uint64_t> unchecked_;
 };
 
-/// For maps that cannot be stored.
 icd::Refusal storage_refusal();
 
 }  // namespace adit::forward

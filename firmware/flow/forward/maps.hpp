@@ -36,8 +36,7 @@ namespace adit::forward {
 /// of sending.
 class Maps {
  public:
-  /// Each map has a mapped file (vm.max_map_count is 65,530). Beyond kMostMaps only maps that merge with
-  /// queued ones are accepted.
+  /// Each map has a mapped file (vm.max_map_count: 65,530). Beyond kMostMaps only merging maps are accepted.
   static constexpr std::size_t kMostMaps = 20'000, kMostWithJoined = 40'000;
 
   /// `taken` gets delivered maps. `spool` outlives the writer.
@@ -82,7 +81,6 @@ class Maps {
   /// Stops sending, and compares no more clouds. False while an answer is awaited.
   bool stop();
   void set_standby() { stopping_ = true; }
-  /// True if no map is being stored.
   bool has_stored_all() const { return overtaken_.empty() && store_.count() == 0; }
   /// Why the last map could not be stored, or "".
   const std::string& trouble() const { return store_.trouble(); }

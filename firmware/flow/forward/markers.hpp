@@ -42,8 +42,7 @@ class MarkerArrivals {
 
   void accept(icd::MarkersUpdate update, queues::Upload upload, Done done);
 
-  /// True while an update is in the journal, perhaps not yet whole, and not yet whole in the queue. Do not
-  /// send then.
+  /// True while an update is in the journal, perhaps partly, and not yet whole in the queue. Do not send.
   bool is_in_part() const { return !empty() && arrivals_.front().is_kept; }
   bool empty() const { return arrivals_.empty(); }
 

@@ -45,9 +45,8 @@ class RejectedStore {
   /// `bounds`: of a grid that replaced others (queues::QueuedMap). `faults`: of a map that is put aside.
   void add(queues::Message message, int status, const std::string& why, std::size_t bytes, Origin origin,
            const std::optional<icd::GridBounds>& bounds = {}, int faults = 0);
-  /// The Command Post accepted `message`: marks older rejected messages that it contains, so that they are
-  /// never sent. Forget `message` only after `written`, which is called on the loop. False: no mark to write,
-  /// and `written` is not called.
+  /// The Command Post accepted `message`: marks older rejected messages that it contains, which are never
+  /// sent. Forget `message` only after `written`, called on the loop. False: no mark to write, and no call.
   bool mark_contained(const queues::Message& message, std::function<void()> written = [] {});
   bool empty() const { return items_.items().empty(); }
   /// Messages that were removed for newer ones.

@@ -30,7 +30,6 @@
 
 namespace adit::forward {
 
-/// The clients that wait for the status of the run.
 class StatusClients {
  public:
   /// A client waits so long for a new status. Then it gets the last known one.
@@ -45,8 +44,7 @@ class StatusClients {
     if (empty()) return std::nullopt;
     return std::ranges::min_element(waiting_, {}, &Client::until)->until;
   }
-  /// Answers the clients whose wait ends at `now` or earlier. Instead they wait until `longest` if it is
-  /// later.
+  /// Answers the clients whose wait ends by `now`, or makes them wait until `longest` if that is later.
   void answer_due(loop::Instant now, loop::Instant longest, const intake::Answer& answer) {
     std::erase_if(waiting_, [&](Client& client) {
       if (client.until > now) return false;
@@ -126,8 +124,7 @@ class Scoring {
   /// For the operator's test.
   UriPace& status_pace() { return pace_.status_pace(); }
   void on_settings_changed();
-  /// Answers in flight still come from the old endpoint. At another endpoint the run's data is cleared.
-  /// Clients keep waiting.
+  /// Answers in flight are the old endpoint's. Another endpoint clears the run's data. Clients keep waiting.
   void on_endpoint_changed(std::optional<icd::BearerToken> token);
   /// Call before start(): opens no connection and sends no request.
   void set_standby() { stopping_ = true; }

@@ -23,14 +23,11 @@ class Slot {
   explicit Slot(std::uint64_t most) { allow(most); }
   void allow(std::uint64_t most);
 
-  /// A map was packed, which took so long.
   void on_packing_done(loop::Duration took);
   /// Effort::Full packs so many bytes of a cloud's points to so many, at that precision.
   void on_packed(std::size_t points, std::size_t bytes, queues::Precision precision);
-  /// A worker took so long to pack a map for which pack::seconds_for() expects so many seconds; 0: the map
-  /// was not compressed.
+  /// A worker packed a map in `took`; pack::seconds_for() expects `expected` seconds; 0: not compressed.
   void on_work_done(loop::Duration took, double expected);
-  /// So many bytes left, of which the last were held back until then.
   void on_sent(std::size_t bytes, const uplink::SendTimes& sent, loop::Instant last_byte_not_before);
 
   /// The link takes no more than so many bytes a second now; 0: not known.

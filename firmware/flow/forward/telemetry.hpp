@@ -42,7 +42,6 @@ class States {
 
   UriPace& pace() { return pace_; }
   bool empty() const { return queue_.empty(); }
-  /// StateQueue::next()
   std::optional<queues::StateQueue::NextState> next() const { return queue_.next(loop_.now()); }
   /// When the robot's pose was accepted that is queued or in flight.
   std::optional<loop::Instant> accepted_at(const std::string& robot) const;

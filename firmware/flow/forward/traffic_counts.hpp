@@ -68,8 +68,7 @@ class TrafficCounts {
   explicit TrafficCounts(std::function<void()> changed) : changed_(std::move(changed)) {}
 
   void count_accepted(const Traffic& traffic, std::size_t bytes, api::Time now);
-  /// Restores times from before a restart (NaN: never). Call after count_accepted() for queued messages,
-  /// which may be newer.
+  /// Restores old times (NaN: never). Call after count_accepted() for queued messages, which may be newer.
   void restore(const Traffic& traffic, api::Time accepted, api::Time forwarded);
   /// A message was rejected because the queue is full.
   void no_room(const Traffic& traffic, api::Time now);

@@ -68,8 +68,7 @@ class UriPace {
     keep();
   }
 
-  /// `stamp`, or the last stamp if that is later (promise 5). Call keep_stamp() with the message's last
-  /// stamp.
+  /// `stamp`, or a later last stamp (promise 5). Call keep_stamp() with the message's last stamp.
   icd::Stamp next_stamp(icd::Stamp stamp) { return last_stamp_ = std::max(last_stamp_, stamp); }
   void keep_stamp(icd::Stamp last) { journal_.record_stamp(uri_, last); }
 
@@ -82,7 +81,6 @@ class UriPace {
   void on_departed(const uplink::SendTimes& sent) {
     rate_.on_departed({.first = sent.first, .last = sent.last});
   }
-  /// `sent`: when its bytes left.
   void on_answered(const uplink::SendTimes& sent, pace::Instant now) {
     rate_.on_answered({.first = sent.first, .last = sent.last}, now);
     keep();
@@ -145,7 +143,6 @@ class ScoringPace {
   ScoringPace(const settings::Rates& rates, std::mt19937_64& random, journal::Journal& journal);
 
   void restore(const journal::HandoverState& carried, pace::Instant now);
-  /// By the settings.
   void allow(const settings::Rates& rates, pace::Instant now);
   void on_link_up();
   void assume_just_sent(pace::Instant now);

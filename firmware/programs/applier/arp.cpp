@@ -87,8 +87,7 @@ constexpr sock_filter load(unsigned size, std::uint32_t at) {
   return statement(BPF_LD | size | BPF_ABS, at);
 }
 
-/// A comparison. One result continues the program. The other jumps to an end, which keeps or drops the
-/// packet.
+/// A comparison. One result continues the program; the other jumps to an end that keeps or drops the packet.
 struct Jump {
   unsigned how;
   std::uint32_t value;

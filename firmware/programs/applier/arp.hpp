@@ -39,8 +39,7 @@ struct ArpPacket {
 std::optional<ArpPacket> read_arp(std::span<const std::uint8_t> packet);
 
 /// The MAC address that claims `address` by this packet (RFC 826): it uses the address, or probes for it at
-/// the same time. std::nullopt: the packet is our own, about another address, or not ARP for IPv4 on
-/// Ethernet.
+/// the same time. std::nullopt: our own packet, another address, or not ARP for IPv4 on Ethernet.
 std::optional<Mac> claimant(std::span<const std::uint8_t> packet, std::uint32_t address, const Mac& own);
 
 /// The MAC address of an interface. Error: the interface is absent or not Ethernet.
@@ -70,8 +69,7 @@ class ArpSocket {
   Mac own_{};
 };
 
-/// The kernel filter of filter_addresses() (socket(7), SO_ATTACH_FILTER), for data that begins with the ARP
-/// header.
+/// The kernel filter of filter_addresses() (socket(7), SO_ATTACH_FILTER), for data from the ARP header on.
 std::vector<sock_filter> arp_filter(const std::vector<std::uint32_t>& addresses);
 
 /// Another machine's claim to an address.

@@ -113,8 +113,7 @@ void ClockSetter::answer(const clock::Request& request) {
   if (status_.refusal.empty()) {
     status_.source = request.source;
     if (request.source == clock::Source::Ntp) status_.server = request.server;
-    // A guessed time is not stored, because the next boot trusts the battery clock more than the Command
-    // Post.
+    // A guess is not stored, because the next boot trusts the battery clock more than the Command Post.
     if (clock::is_set(request.source)) clocks_.set_chip(time);
     host::log(Level::Notice, "clock set",
               {{"by", std::string(clock::kSourceWords[static_cast<std::size_t>(request.source)])},

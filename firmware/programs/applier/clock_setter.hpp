@@ -52,8 +52,7 @@ class ClockSetter {
         file_(options.status + '/' + host::kStatusFile),
         chronyd_(options.status, options.team, options.systemctl) {}
 
-  /// Answers all requests, then returns. Error: its own directory is unusable, or a request cannot be
-  /// removed.
+  /// Answers all requests, then returns. Error: its directory is unusable, or a request cannot be removed.
   std::expected<void, std::string> work();
 
  private:

@@ -23,7 +23,6 @@ struct CardContents {
   bool nothing() const { return !settings && !numbers && tokens.empty(); }
 };
 
-/// The result of reading a card.
 struct CardResult {
   CardContents brought;
   std::vector<std::string> errors;      // "adit/settings.json: team.listen[0].port: ..."; if any, no file is

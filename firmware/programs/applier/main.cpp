@@ -1,5 +1,4 @@
-/// adit-network: changes the box's addresses and the firewall's open ports, for aditd, which has no
-/// privileges.
+/// adit-network: changes the box's addresses and the firewall's open ports, for unprivileged aditd.
 
 #include <net/if.h>
 #include <sys/epoll.h>
@@ -37,8 +36,7 @@ namespace {
 /// writes them to network::kTakenFile. Runs until the box stops. Interfaces may come and go.
 class AddressWatch {
  public:
-  /// Packets read at once, and the pause after as many. In a flood the kernel drops packets, which costs no
-  /// CPU time here.
+  /// Packets read at once, before a pause. In a flood the kernel drops packets, which costs no CPU time here.
   static constexpr int kMostAtOnce = 64;
   static constexpr std::chrono::milliseconds kRest{100};
   /// Least time between two writes of the file, and between two log lines about an interface.
@@ -208,7 +206,6 @@ void AddressWatch::read_packets(Side& side) {
   work();
 }
 
-/// Does all due work.
 void AddressWatch::work() {
   const Instant now = loop_.now();
   for (Side& side : sides_) {

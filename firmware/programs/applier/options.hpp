@@ -25,7 +25,6 @@ struct Options {
 /// An error names the wrong word.
 [[gnu::cold]] std::expected<Options, std::string> parse_options(std::span<const char* const> arguments);
 
-/// adit-update's command line.
 struct UpdateOptions {
   std::string wanted = "/var/lib/private/adit";       // directory of aditd's requests
   std::string status = "/run/adit-update";            // directory of the status, readable by all
@@ -40,7 +39,6 @@ struct UpdateOptions {
 };
 [[gnu::cold]] command_line::Program command_line_of(UpdateOptions& options);
 
-/// adit-clock's command line.
 struct ClockOptions {
   std::string wanted = "/var/lib/private/adit";  // directory of aditd's requests
   std::string status = "/run/adit-clock";        // directory of the status, readable by all
@@ -52,7 +50,6 @@ struct ClockOptions {
 };
 [[gnu::cold]] command_line::Program command_line_of(ClockOptions& options);
 
-/// adit-spare's command line.
 struct SpareOptions {
   std::string wanted = "/var/lib/private/adit";  // directory of aditd's requests
   std::string status = "/run/adit-spare";        // directory of the status, readable by all
@@ -64,7 +61,6 @@ struct SpareOptions {
 };
 [[gnu::cold]] command_line::Program command_line_of(SpareOptions& options);
 
-/// adit-certificate's command line.
 struct CertificateOptions {
   std::string state = "/var/lib/private/adit";   // aditd's state directory: its requests, and tls.pem
   std::string status = "/run/adit/certificate";  // directory of the status
@@ -73,7 +69,6 @@ struct CertificateOptions {
 };
 [[gnu::cold]] command_line::Program command_line_of(CertificateOptions& options);
 
-/// adit-import's command line.
 struct ImportOptions {
   std::string card = "/boot/adit";                    // the user's files
   std::string state = "/var/lib/private/adit";        // of aditd

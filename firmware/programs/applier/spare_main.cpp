@@ -1,5 +1,4 @@
-/// adit-spare: copies exports for a spare box to and from a USB stick, as root, for aditd, which has no
-/// privileges.
+/// adit-spare: copies exports for a spare box to and from a USB stick, as root, for unprivileged aditd.
 
 #include <expected>
 #include <string>
@@ -31,8 +30,7 @@ std::expected<std::string, std::string> take_export(host::UntrustedFolder& folde
   return bytes;
 }
 
-/// The work of adit-spare: copies exports to and from the stick, one after the other, on aditd's request, and
-/// reports the status.
+/// adit-spare's work: copies exports to and from the stick, one by one, on request, and reports the status.
 class SpareKeeper {
  public:
   /// `options` must outlive this object.
@@ -101,8 +99,7 @@ class SpareKeeper {
     return written ? "" : written.error();
   }
 
-  /// Compares with the stick's content. After the unmount the kernel's memory holds none of the file, so the
-  /// bytes come from the stick.
+  /// Compares with the stick's content. After the unmount, the kernel's memory holds none of the file.
   std::string check(const spare::Medium& medium, const std::string& name, const std::string& bytes) {
     const auto kept = read_export(sticks_.folder(medium.name), name);
     if (kept && *kept == bytes) return "";

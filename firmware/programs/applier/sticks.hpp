@@ -20,12 +20,10 @@ inline constexpr const char* kUnfinished = "adit-spare.part";
 std::expected<void, std::string> write_export(const std::string& folder, const std::string& name,
                                               const std::string& bytes);
 
-/// Reads a whole export in the same way, without blocking. Error: not a plain file, unreadable, or longer
-/// than spare::kLargestExport.
+/// Reads an export likewise, without blocking. Error: no plain file, unreadable, above spare::kLargestExport.
 std::expected<std::string, std::string> read_export(const std::string& folder, const std::string& name);
 
-/// The USB sticks that are plugged in. systemd mounts each file system in a directory of its own
-/// (services/adit-stick@.service).
+/// USB sticks. systemd mounts each file system in a directory of its own (services/adit-stick@.service).
 class Sticks {
  public:
   enum class Mode : std::uint8_t { ReadOnly, Writable };

@@ -48,9 +48,8 @@ bool save(const std::string& folder, const update::ProvenSlot& proven);
 /// An update's file that other users cannot change during checks and installation.
 class BundleFile {
  public:
-  /// Takes a file out of a directory in which another user writes. The file has no name afterwards, belongs
-  /// to this user and is open for writing in no process. After an error the file is still removed, if
-  /// possible.
+  /// Takes a file out of a directory in which another user writes. It then has no name, belongs to this user
+  /// and is open for writing in no process. After an error it is still removed, if possible.
   static std::expected<BundleFile, std::string> take_file(host::UntrustedFolder& folder,
                                                           const std::string& name);
   /// Opens a file on a read-only file system.
@@ -72,12 +71,10 @@ class Rauc {
  public:
   explicit Rauc(std::string command) : command_(std::move(command)) {}
 
-  /// The board and the running slot, without the version. Blocks while RAUC is busy, because it gives no
-  /// status then.
+  /// Board and running slot, without the version. Blocks while RAUC is busy, because it gives no status then.
   std::expected<update::RunningSystem, std::string> status() const;
   std::expected<update::Bundle, std::string> info(const std::string& bundle) const;
-  /// Writes the other slot and makes it the next to start. `progress`: per cent. After an error RAUC may
-  /// still be at work.
+  /// Writes the other slot, to start next. `progress`: per cent. After an error RAUC may still be at work.
   std::expected<void, std::string> install(const std::string& bundle,
                                            const std::function<void(int)>& progress) const;
   /// Marks the running slot healthy and resets its count of starts.

@@ -22,7 +22,6 @@ namespace adit::cli {
 
 enum class Exit : int { Fine = 0, Attention = 1, Unable = 2 };
 
-/// A command's output and exit status.
 struct Outcome {
   Exit exit = Exit::Fine;
   std::string out, err;
@@ -120,7 +119,6 @@ struct Adit {
   Token token;
 };
 
-/// Why a command failed.
 struct Failure {
   Exit exit = Exit::Unable;  // Attention: Adit rejected the action, or its target does not exist
   std::string sentence;
@@ -218,8 +216,7 @@ Result<Outcome> act(const Call& call, Post action, const std::string& done);
 /// Executes an action for each number in the options, until Adit cannot be asked.
 Outcome act_on_each(const Call& call, const std::function<Result<Outcome>(std::int64_t number)>& act_on);
 
-/// Succeeds with --yes, or if the operator confirms. `why`: the reason for the question. `undone`: the error
-/// if the operator declines.
+/// Succeeds with --yes, or if the operator confirms. `why`: the reason to ask. `undone`: the error otherwise.
 Result<void> confirm(const Options& options, const Console& console, const std::string& why,
                      const std::string& question, const std::string& undone = "it was not done");
 

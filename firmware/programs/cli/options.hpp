@@ -51,7 +51,6 @@ struct Trial {
 struct CommandRow;
 struct Form;
 
-/// adit's command line.
 struct Options {
   const CommandRow* command = nullptr;  // null: not named; of help: the command to explain
   const Form* form = nullptr;           // the subcommand; null for help and version
@@ -91,7 +90,6 @@ bool is_among(std::string_view option, std::string_view options);
 /// Whether the form takes the option.
 bool accepts_option(const Form& form, std::string_view option);
 
-/// An error in a command line.
 struct WrongLine {
   std::string sentence;       // names the wrong word
   const CommandRow* command;  // the line's command, or null

@@ -218,7 +218,6 @@ std::string text_of(const api::SetupView& setup, const settings::Settings& setti
          "all others have their defaults\n\ntokens\n" + tokens_text(setup.tokens, colour);
 }
 
-/// Adit's check of settings.
 Result<Fetched<api::CheckView>> ask_check(const Adit& adit, const Value& settings) {
   return read_row_of<api::CheckView>(
       adit, post(adit, {.target = "/adit/settings/check",
@@ -226,8 +225,7 @@ Result<Fetched<api::CheckView>> ask_check(const Adit& adit, const Value& setting
                         .body = codec::write_json({Value::Object{{"settings", settings}}})}));
 }
 
-/// Posts a change and waits until the box uses it. Error: the box reverted the change, or does not use it in
-/// time.
+/// Posts a change and waits until the box uses it. Error: the box reverted it, or does not use it in time.
 Result<Fetched<api::ChangesView>> change(const Adit& adit, const std::string& target,
                                          const Value::Object& body, const char* check) {
   auto changed = read_row_of<api::ChangesView>(
@@ -251,8 +249,7 @@ Value value_in(const std::string& text, const Value& before) {
   return value && (!is_text(before) || is_text(*value)) ? *std::move(value) : Value{text};
 }
 
-/// Checks the settings and applies them to a box with the settings of `now`.
-/// `text`: of the file that they are in, or "".
+/// Checks the settings and applies them to a box with the settings of `now`. `text`: their file's, or "".
 Result<Outcome> apply(const Call& call, const api::SetupView& now, const Value& settings,
                       std::string_view text = "") {
   auto checked = ADIT_TRY(ask_check(call.adit, settings));

@@ -18,8 +18,7 @@ struct ShownKey {
   codec::Value::Object values;  // by path
 };
 
-/// The key `name`, or the keys below it ("reports" of "reports.review"). If there is none, the error suggests
-/// a key.
+/// The key `name`, or the keys below it ("reports" of "reports.review"). Else an error, which suggests a key.
 Result<std::vector<ShownKey>> keys_named(const api::SetupView& setup, const std::string& name);
 
 /// The value at "reports.review", "team.listen[0].port" or "robots[ugv1].alias", or null.

@@ -12,7 +12,6 @@ namespace adit::cli {
 
 /// Whether the report stays in its state until the operator decides.
 bool needs_the_operator(const facts::ReportRow& report);
-/// Whether the report is in a final state.
 bool is_finished(const facts::ReportRow& report);
 
 /// The report's state for people: "held", "in doubt", "in doubt, asking", "held, to be sent".

@@ -20,8 +20,7 @@ namespace {
 constexpr std::string_view kStored = "listen-";  // no socket unit of Adit has this name
 constexpr std::string_view kTls = "tls";         // FileDescriptorName= of adit-tls-plain.socket
 
-/// The name in systemd's store: "listen-team0-10.0.0.1-8000". The port is the one in the settings, and may be
-/// 0.
+/// The name in systemd's store: "listen-team0-10.0.0.1-8000", with the settings' port, which may be 0.
 std::string name_of(const intake::Listen& listen) {
   std::string address = listen.address;
   std::ranges::replace(address, ':', '_');

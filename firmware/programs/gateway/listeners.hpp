@@ -44,8 +44,7 @@ class ListenSockets {
   /// in the way. An error names the address.
   std::expected<std::vector<OpenSocket>, std::string> open(const settings::Team& team);
 
-  /// State of sockets that are bound to an interface. A re-plugged adapter is another interface of the same
-  /// name.
+  /// State of sockets bound to an interface. A re-plugged adapter is another interface of the same name.
   enum class Reach : std::uint8_t {
     Well,       // or its interface is absent
     Reopen,     // to be opened again

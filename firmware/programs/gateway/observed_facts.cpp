@@ -95,7 +95,6 @@ facts::EndpointRow endpoint_row(const char* name, const settings::Address& addre
   return row;
 }
 
-/// One robot's activities.
 struct RobotActivity {
   std::uint64_t accepted = 0, ended = 0;  // ended: delivered or rejected
   journal::Heard heard;

@@ -15,8 +15,7 @@
 
 namespace adit::gateway {
 
-/// Rejected or closed connections and wrong tokens of the team's side: counts, shows the present ones, and
-/// logs them once a minute.
+/// Counts the team's rejected or closed connections and wrong tokens, shows present ones, logs once a minute.
 class Crowding {
  public:
   static constexpr std::chrono::minutes kRecent{1}, kLogEvery{1};

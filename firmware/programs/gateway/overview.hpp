@@ -58,8 +58,7 @@ struct Parts {
   std::string runtime_folder;
 };
 
-/// Robots that are not in the settings. Their messages are accepted, because the ICD forbids no name, but
-/// shown, because the name may be misspelt.
+/// Robots not in the settings: accepted, because the ICD forbids no name, but shown as perhaps misspelt.
 class Roster {
  public:
   static constexpr std::chrono::minutes kRecent{2};  // since the last message
@@ -113,11 +112,9 @@ class Overview final : public api::Source {
   std::expected<void, std::string> acknowledge(const std::string& id);
   /// Shows the last snapshot, and logs the end of set-up.
   void show_on(box::Lights& lights) const;
-  /// A robot's message was accepted.
   void on_posted(const std::string& robot);
   /// A connection of the team was rejected or closed.
   void on_ended(intake::CloseReason why, const std::string& address);
-  /// Settings or tokens have changed.
   void on_settings_changed(const settings::Restarts& restarts);
   /// The time of day was set ahead by `seconds`.
   void on_wall_set(double seconds) { board_.move(seconds); }

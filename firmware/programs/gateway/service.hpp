@@ -23,8 +23,7 @@ class Service {
   /// `options` and `arguments`, main()'s, outlive this.
   Service(const Options& options, char* const* arguments);
 
-  /// After this many faults, each within kWell of its start, a start puts queued messages aside, because they
-  /// may be the cause.
+  /// After this many faults, each within kWell of a start, queued messages are put aside as a possible cause.
   static constexpr std::uintmax_t kMostFaults = 3;
   static constexpr std::chrono::seconds kWell{60};
 

@@ -15,8 +15,7 @@
 #include <tuple>
 #include <unordered_map>
 
-// What the two programs of this folder agree on, so that the Command Post can tell how much of what the
-// robots posted has come.
+// Shared by the two programs, so that the Command Post can tell how much of the robots' posts has come.
 
 namespace adit {
 
@@ -76,13 +75,11 @@ inline constexpr std::string_view kDateFollows = "\x0d\x57\x2a\x3d\x63";
 inline constexpr std::size_t kDateDigits = 5;
 inline constexpr std::int64_t kDateBase = 101;
 
-/// The known cells of grids, each counted once even if it came often: of the grids that a robot posted, or
-/// that the Command Post has. Cells of another size are different cells. Both programs of this directory use
-/// it.
+/// The known cells of grids, each counted once: of grids that a robot posted, or that the Command Post has.
+/// Cells of another size are different cells. Both programs use it.
 class KnownCells {
  public:
-  /// A grid's cells, row by row from the lower left at (`left`, `bottom`), in metres as `resolution`; `width`
-  /// is at least 1.
+  /// Cells, row by row from the lower left at (`left`, `bottom`), in metres as `resolution`; `width` >= 1.
   void add(double resolution, double left, double bottom, std::size_t width,
            std::span<const std::uint8_t> cells) {
     const std::int64_t size = std::llround(resolution * 1e6);

@@ -79,10 +79,9 @@ class Faults {
   /// From now on every request is answered as it should be.
   void clear();
 
-  /// The fault for a request; one that behaves if no fault waits. After a fault with a wrong
-  /// remaining_reports, each later one for Status has it, too; while the clocks stand, so has each one for
-  /// Status and Reports. `body`: of the request. If it does not name the robot of the next fault, it gets no
-  /// fault.
+  /// The fault for a request with `body`; one that behaves if none waits, or if `body` does not name the next
+  /// fault's robot. After a fault with a wrong remaining_reports, each later one for Status has it;
+  /// while the clocks stand, so has each one for Status and Reports.
   Fault next(Aim aim, std::string_view body, Clock::time_point now);
 
   /// The waiting faults, the random ones, the error of remaining_reports, and whether the clocks run.
@@ -112,8 +111,7 @@ class Faults {
 /// Whether the request is judged at all.
 bool records(const Fault& fault);
 
-/// Puts the fault between a decided outcome and the connection. The outcome of a request that was judged
-/// stays if it is no answer.
+/// Puts the fault between a decided outcome and the connection. A judged outcome that is no answer stays.
 void spoil(const Fault& fault, Aim aim, Manner manner, Judgement& judgement);
 
 }  // namespace adit::rehearsal

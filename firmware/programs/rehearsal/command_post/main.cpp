@@ -38,7 +38,6 @@
 namespace adit::rehearsal {
 namespace {
 
-/// What the command line says.
 struct Options {
   Address scoring;
   Address mapping;
@@ -84,8 +83,7 @@ class CommandPost {
   Outcome scoring(const Request& request);
   Outcome mapping(const Request& request);
 
-  /// The control port (README.md, 'The control port'). POST /posted, of adit-robots, is described at
-  /// Arrivals::set_expected.
+  /// The control port (README.md, 'The control port'). POST /posted of adit-robots: Arrivals::set_expected.
   Outcome control(const Request& request);
 
   Faults& faults() { return faults_; }
@@ -299,8 +297,7 @@ void CommandPost::check_names(Judgement& judgement) const {
   }
 }
 
-/// ICD 5: approximately one request a second. A status may follow at once only if the report's answer was
-/// lost.
+/// ICD 5: about one request a second. A status may follow at once only if the report's answer was lost.
 void CommandPost::note_order(const Request& request, const Fault& fault, Judgement& judgement) {
   const double hz = options_.rate.value_or(options_.manner == Manner::Strict ? 1 : 0);
   if (judgement.report) reported_.reset();

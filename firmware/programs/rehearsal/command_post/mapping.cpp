@@ -17,12 +17,10 @@ Format format_of(const Request& request) {
 /// Said where a message could not be read and no finding tells why.
 constexpr const char* kUnreadable = "The message could not be read";
 
-/// ICD 6.2: the stamps of a URI never run backward, within a message and from one to the next; equal ones are
-/// fine. Safe for use by several threads.
+/// ICD 6.2: a URI's stamps never run backward, in a message or between two; equal ones are fine. Thread-safe.
 class StampOrder {
  public:
-  /// Writes down the first stamp that is before one that came earlier. A message that passes, or that is
-  /// taken all the same (`taken_anyhow`), counts from then on.
+  /// Records the first stamp that ran back. A message that passes, or is `taken_anyhow`, counts from then on.
   void check(const std::string& uri, const std::vector<Stamp>& stamps, bool taken_anyhow,
              Findings& findings) {
     const std::lock_guard lock(mutex_);

@@ -321,8 +321,7 @@ std::optional<MarkerChange> read_identity(const Field& marker) {
   return MarkerChange{.ns = *text, .id = *number};
 }
 
-/// ROS's Marker has none, or one for each point if its type is made of points. rviz also accepts one for each
-/// triangle.
+/// ROS's Marker has none, or one for each point if its type has points. rviz also accepts one per triangle.
 void check_colors(const Field& colors, std::size_t points, std::int64_t type) {
   const auto elements = colors.elements();
   if (!elements) return;
@@ -363,8 +362,7 @@ void check_appearance(const Field& marker) {
   if (const auto text = marker.optional_member("text")) text->to_text();
 }
 
-/// Alpha 0: "the object will appear invisible" (ICD 6.6), unless its points or its mesh have colors of their
-/// own.
+/// Alpha 0: "the object will appear invisible" (ICD 6.6), unless its points or its mesh have own colors.
 void check_alpha(const Field& marker) {
   const Json& all = marker.value();
   const auto shows = [](const Json& color) {

@@ -63,9 +63,8 @@ struct MappingMessage {
   std::vector<MarkerChange> markers = {};
 };
 
-/// Reads the body of `judgement.uri` and writes down its findings. Leaves the document in
-/// judgement.message, with a map's data described, not stored. std::nullopt if there is no message.
-/// Requires a URI of kMappingFunctions.
+/// Reads the body of `judgement.uri` and records its findings. Leaves the document in judgement.message, with
+/// a map's data described, not stored. std::nullopt: no message. Requires a URI of kMappingFunctions.
 std::optional<MappingMessage> read_mapping(const std::string& body, Format format, Judgement& judgement);
 
 }  // namespace adit::rehearsal

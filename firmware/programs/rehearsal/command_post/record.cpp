@@ -83,9 +83,8 @@ void write_values(std::ofstream& file, const char* value, const CloudField& fiel
   }
 }
 
-/// Writes `stem`.pcd, PCD v0.7, binary: the message's fields without the gaps between them, little-endian,
-/// its origin as the VIEWPOINT. Bytes after the last whole point are left out. Returns false if the disk did
-/// not take it.
+/// Writes `stem`.pcd (PCD v0.7, binary): the message's fields without gaps, little-endian, its origin as the
+/// VIEWPOINT, without bytes after the last whole point. False: the disk did not take it.
 bool write_cloud(const Cloud& cloud, const std::string& data, const std::string& stem) {
   const std::size_t points = data.size() / cloud.point_step;
   std::ofstream file(stem + ".pcd", std::ios::binary);
@@ -118,9 +117,8 @@ double yaw_of(const Rotation& q) {
   return std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z));
 }
 
-/// Writes `stem`.pgm as ROS's map_saver would draw it (254 free to 0 occupied, 205 unknown, the first row at
-/// the bottom; each value from 0 to 100 has its own grey) and `stem`.yaml beside it. False: the disk did not
-/// take it.
+/// Writes `stem`.pgm as ROS's map_saver draws it (254 free to 0 occupied, 205 unknown, a grey for each value
+/// from 0 to 100, first row at the bottom) and `stem`.yaml. False: the disk did not take it.
 bool write_grid(const Grid& grid, const std::string& cells, const std::string& stem) {
   std::ofstream picture(stem + ".pgm", std::ios::binary), yaml(stem + ".yaml");
   picture << "P5\n" << grid.width << ' ' << grid.height << "\n255\n";
@@ -372,8 +370,7 @@ constexpr std::int64_t kModulus = kDateBase * kDateBase * kDateBase * kDateBase 
 /// When a map's data was posted, as adit-robots writes it into its maps (README.md, 'How old').
 struct Dates {
   Moment newest;
-  // Of a cloud: how many different points were posted then. A cloud that was joined of several has some of
-  // them twice.
+  // Of a cloud: how many different points were posted then. A merged cloud may have some twice.
   std::map<Moment, std::uint64_t> points;
 };
 

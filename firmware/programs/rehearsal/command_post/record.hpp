@@ -26,8 +26,7 @@ namespace adit::rehearsal {
 inline constexpr const char* kByClient = "client";
 inline constexpr const char* kByOther = "other sender";
 
-/// What a run came to: counts, reports, violations of the ICD. Bounded, whatever a peer sends. Safe for use
-/// by several threads.
+/// A run's counts, reports and violations of the ICD. Bounded, whatever a peer sends. Thread-safe.
 class Record {
  public:
   explicit Record(Manner manner) : manner_(manner) {}
@@ -69,12 +68,10 @@ class Record {
   std::string killed_by_;
 };
 
-/// A folder that a person can look through: requests.jsonl and reports.jsonl, one line each; grids/ and
-/// clouds/ with a picture of each map. Safe for use by several threads.
+/// A folder for people: requests.jsonl, reports.jsonl, and map pictures in grids/ and clouds/. Thread-safe.
 class Transcript {
  public:
-  /// Makes `folder`; lines go after those that a transcript there already has. Once `most` bytes are written
-  /// there are no more pictures, only lines.
+  /// Makes `folder`, or appends to its transcript. After `most` bytes, writes only lines and no pictures.
   static std::expected<std::unique_ptr<Transcript>, std::string> open(const std::string& folder,
                                                                       std::uint64_t most);
 
@@ -116,10 +113,9 @@ class Arrivals {
   void note(const std::vector<MarkerChange>& changes, Findings& findings);
 
   /// What adit-robots posted so far: [{"robot": "r1", "kind": "cloud", "amount": 1200, "places": 300,
-  /// "newest": MS}], cells or points, places that have points (optional for grids), and the newest
-  /// date in milliseconds since 1970; and what should stand, of each robot:
-  /// {"robot": "r1", "kind": "markers", "standing": [{"ns": "r1/path", "id": 3, "x": METRES}]}. The error is
-  /// a sentence that names the field.
+  /// "newest": MS}], cells or points, places with points (optional for grids), and the newest date in
+  /// milliseconds since 1970; and what should stand: {"robot": "r1", "kind": "markers", "standing": [{"ns":
+  /// "r1/path", "id": 3, "x": METRES}]}. The error is a sentence that names the field.
   std::expected<void, std::string> set_expected(const Json& posted);
 
   /// "maps", an object for each robot and kind, ages in seconds (README.md, 'How old'); and "markers": how

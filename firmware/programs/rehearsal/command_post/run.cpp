@@ -27,8 +27,7 @@ std::optional<Artifact> artifact_of(std::string_view line) {
   return Artifact{type, {*x, *y, *z}};
 }
 
-/// Claims the nearest artifact of that type (in any letter case) which no report has claimed, if it is within
-/// 5 m. Gives whether there was one.
+/// Claims the nearest unclaimed artifact of that type (in any letter case) within 5 m. False: there is none.
 bool claim(std::vector<Artifact>& artifacts, std::string_view type, const Vector3& position) {
   Artifact* nearest = nullptr;
   double least = kScoringDistance;

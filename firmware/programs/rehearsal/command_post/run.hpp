@@ -20,8 +20,7 @@ struct Artifact {
   bool claimed = false;  // by a report that scored
 };
 
-/// A CSV of true artifacts: the header line "type,x,y,z", then one artifact a line, in metres. An error names
-/// the line.
+/// A CSV of true artifacts: a header "type,x,y,z", then one a line, in metres. An error names the line.
 std::expected<std::vector<Artifact>, std::string> read_artifacts(const std::string& path);
 
 using Clock = std::chrono::steady_clock;

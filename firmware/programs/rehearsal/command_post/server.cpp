@@ -229,8 +229,7 @@ class Connection {
       ::setsockopt(socket_.get(), SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
       return;
     }
-    // Reads on for a moment after the last answer: closing with bytes unread would send a reset, and the
-    // client might never read its answer.
+    // Reads on briefly after the last answer, because a reset by a close with unread bytes may lose it.
     constexpr Milliseconds patience{500};
     ::shutdown(socket_.get(), SHUT_WR);
     const auto until = Clock::now() + patience;

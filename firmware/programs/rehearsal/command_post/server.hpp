@@ -42,8 +42,7 @@ class Link {
 /// In UTC, by a format of strftime(3). No program here has a locale.
 std::string utc_text(const char* format, std::chrono::system_clock::time_point time);
 
-/// The answer's bytes as they go to the socket; without its body for a HEAD request. With a Date, as
-/// for each server with a clock (RFC 9110 6.6.1).
+/// The answer's bytes, without a body for HEAD, with a Date as of servers with a clock (RFC 9110 6.6.1).
 std::string bytes_of(const Outcome& outcome, bool head, std::chrono::system_clock::time_point now);
 
 /// How an endpoint behaves below its messages.

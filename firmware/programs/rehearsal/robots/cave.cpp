@@ -157,8 +157,7 @@ std::vector<Chamber> spread_chambers(const Lattice& lattice, Random& random) {
   return chambers;
 }
 
-/// Carves the chambers and the tunnels that join them all, roughens the walls, and fills whatever cannot be
-/// reached from the entrance.
+/// Carves chambers and joining tunnels, roughens the walls, and fills cells unreachable from the entrance.
 Hollow carve(const Lattice& lattice, const std::vector<Chamber>& chambers, Random& random) {
   Hollow hollow(lattice, 0);
   for (const Chamber& chamber : chambers) carve_chamber(hollow, chamber, random);
@@ -174,8 +173,7 @@ constexpr Lattice kLattice{.resolution = 0.2, .left = -6, .bottom = -32, .width 
 
 constexpr std::size_t kArtifacts = 2 * kArtifactTypes.size();
 
-/// The floor blends the chambers' heights by their distance; the ceiling is high in chambers and low
-/// between them.
+/// The floor blends the chambers' heights by distance; the ceiling is high in chambers, low between them.
 void raise(const std::vector<Chamber>& chambers, double x, double y, float& floor, float& ceiling) {
   double weights = 0, heights = 0, room = 0;
   for (const Chamber& chamber : chambers) {

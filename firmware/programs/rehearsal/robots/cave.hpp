@@ -10,8 +10,7 @@
 
 namespace adit::robots {
 
-/// Draws that are the same on every machine for the same seed, which the distributions of <random> do not
-/// promise.
+/// Draws that are the same on every machine for one seed, unlike the distributions of <random>.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
@@ -43,8 +42,7 @@ struct Cell {
   friend bool operator==(const Cell&, const Cell&) = default;
 };
 
-/// The square lattice that the cave, every robot's knowledge of it and every grid lie on: row by row from
-/// the lower left.
+/// The square lattice of the cave, each robot's knowledge and each grid: row by row from the lower left.
 struct Lattice {
   double resolution = 1;  // metres
   double left = 0;        // metres, of cell (0, 0)'s lower left corner

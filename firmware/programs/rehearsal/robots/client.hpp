@@ -25,8 +25,7 @@
 
 namespace adit::robots {
 
-/// Where to post: "http://ADDR:PORT", or "localhost" as the address.
-/// The error is a sentence about `url`.
+/// Where to post: "http://ADDR:PORT", or "localhost" as the address. The error is a sentence about `url`.
 std::expected<Address, std::string> parse_url(std::string_view url);
 
 struct HttpReply {

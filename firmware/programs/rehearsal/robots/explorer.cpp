@@ -213,8 +213,7 @@ void Explorer::post_cloud(Clock::time_point now) {
   client_.send(*std::move(cloud));
 }
 
-/// The first robot that sees an artifact reports it, some centimetres off; now and then it takes a rock for
-/// another one.
+/// The first robot that sees an artifact reports it, some centimetres off; at times it reports a rock.
 void Explorer::report_sightings(double seconds) {
   for (const std::size_t artifact : robot_.take_sightings()) {
     const Artifact& seen = cave_.artifacts()[artifact];

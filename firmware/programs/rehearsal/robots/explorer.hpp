@@ -14,9 +14,8 @@
 
 namespace adit::robots {
 
-/// The markers of one robot: its shape, the way it has gone as a line and as nodes, the communication nodes
-/// that it drops, the artifacts that it believes to see. Candidates are deleted when the operator has dealt
-/// with them, and path nodes when they are old.
+/// The markers of one robot: its shape, its way as a line and as nodes, dropped communication nodes, and
+/// believed artifacts. Candidates are deleted when the operator has dealt with them, and path nodes when old.
 class MarkerScene {
  public:
   explicit MarkerScene(std::string robot) : robot_(std::move(robot)) {}
@@ -64,8 +63,7 @@ class PostedTotals {
   std::map<std::string, std::vector<Marker>> standing_;  // by robot
 };
 
-/// Tells the rehearsal Command Post's control port the posted amounts. Returns its table of ages and shares,
-/// or a line with the reason why there is no table.
+/// Posts the amounts to the Command Post's control port. Returns its table of ages and shares, or why none.
 std::string arrivals_of(const PostedTotals& posted, const Address& control);
 
 /// A robot and the software on it: walks, and posts what it knows at the rates of the field. Poses 5 or 10

@@ -35,8 +35,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Standard output, shared by the team's threads: lines that stay, and on a terminal one live line below
-/// them.
+/// Standard output of the team's threads: lines that stay, and on a terminal one live line below them.
 class Console {
  public:
   explicit Console(bool quiet) : quiet_(quiet) {}

@@ -200,8 +200,7 @@ class Body {
     if (style_.gzip_data) msg["compression"] = "gzip";
   }
 
-  /// Two, each with the padding of one point, if they are of one length; else one, as of a cloud that is not
-  /// organised.
+  /// Two rows with the padding of one point, if of one length; else one, as of a cloud that is not organised.
   void put_rows(Json& msg, const Cloud& cloud) const {
     const std::size_t points = cloud.data.size() / cloud.point_step;
     const std::size_t rows = points > 0 && points % 2 == 0 ? 2 : 1, row = cloud.data.size() / rows;

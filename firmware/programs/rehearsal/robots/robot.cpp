@@ -303,8 +303,7 @@ void Robot::step(double metres) {
 }
 
 void Robot::advance(double metres) {
-  // Newly seen cells may have made the goal pointless. The way stays walkable, because the cave does not
-  // change.
+  // Newly seen cells may make the goal pointless. The way stays walkable, because the cave is constant.
   if (!way_.empty() && !is_frontier(map_, way_.front()) && random_.chance(0.2)) way_.clear();
   step(metres);
   map_.sweep(cave_, pose().position, random_);

@@ -18,8 +18,7 @@
 
 namespace adit::robots {
 
-/// What one robot knows of the cave: how surely each cell is rock, and the points that its lidar measured
-/// since they were last taken.
+/// One robot's knowledge: how surely each cell is rock, and the lidar's points since they were last taken.
 class RobotMap {
  public:
   explicit RobotMap(const Lattice& lattice);
@@ -29,12 +28,10 @@ class RobotMap {
   bool is_free(Cell cell) const { return cells_[cell] < 50; }
   bool is_rock(Cell cell) const { return cells_[cell] > 50 && cells_[cell] != kUnknown; }
 
-  /// Sweeps a lidar once round from `from`: cells become surer with each sweep, and those seen for the
-  /// first time add their points.
+  /// Sweeps a lidar once round from `from`: cells become surer each time, and new ones add their points.
   void sweep(const Cave& cave, const Vector3& from, Random& random);
 
-  /// The whole map, from the lower left known cell to the upper right one; each grid covers the one before
-  /// it. Requires a sweep.
+  /// The whole map: the rectangle of known cells; each covers the one before it. Requires a sweep.
   Grid grid(double stamp) const;
 
   /// The known state of the cells from `low` to `high`, both included, which may lie outside of the cave.

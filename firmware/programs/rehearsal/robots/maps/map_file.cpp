@@ -194,8 +194,7 @@ bool is_place(const std::vector<CloudField>& fields, const std::uint8_t* point) 
   });
 }
 
-/// The cloud of `header`, with the points in `rest`. Leaves out padding and points that are no place: the
-/// ICD's clouds are dense (6.3.2).
+/// The cloud of `header` and `rest`, without padding and non-places (the ICD's clouds are dense, 6.3.2).
 std::expected<Cloud, std::string> cloud_of(const PointFile& header, std::string_view rest) {
   ADIT_TRY(check_fields(header.fields));
   const Bytes bytes = ADIT_TRY(header.is_ascii ? ascii_points(header, rest) : binary_points(header, rest));

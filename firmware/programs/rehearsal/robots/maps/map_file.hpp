@@ -15,8 +15,7 @@ namespace adit::robots {
 /// origin, as pcl_viewer takes it, unless it is the identity. Points that are NaN are left out.
 std::expected<Cloud, std::string> parse_pcd(std::string_view bytes);
 
-/// The vertices of a PLY file, `ascii` or `binary_little_endian`; they must be its first element. Other
-/// elements are left out.
+/// A PLY file's vertices, its first element; others are left out. `ascii` or `binary_little_endian`.
 std::expected<Cloud, std::string> parse_ply(std::string_view bytes);
 
 /// What map_saver writes beside a PGM. The defaults are those of a PGM without one.
@@ -29,8 +28,7 @@ struct MapYaml {
   double free_thresh = 0.196;
 };
 
-/// The YAML of a map_saver: flat `key: value` lines. `resolution` and `origin` must be there; the error names
-/// the key.
+/// map_saver's YAML: flat `key: value` lines with `resolution` and `origin`. The error names the key.
 std::expected<MapYaml, std::string> parse_map_yaml(std::string_view text);
 
 /// A binary PGM (P5, one byte a cell) as map_server reads it: dark is occupied (100), light is free (0), in

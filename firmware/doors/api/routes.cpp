@@ -76,10 +76,9 @@ auto call_of(const Handlers& handlers, const Call& call) {
 }
 
 /// Wraps a function on one of the Handlers: a member, or with the handler as first parameter. Its parameter
-/// is what `reader` reads from the body; without a reader the number in the path (404 if it is not a number),
-/// the body (std::string), the RequestHead or the Call. It returns the Answer, a row, a refusal, or the
-/// success of an action (answer_after()), or void and answers by Call::responder, or the object that receives
-/// the body.
+/// is what `reader` reads from the body; without a reader the number in the path (404 if it is none), the
+/// body (std::string), the RequestHead or the Call. It returns the Answer, a row, a refusal, the success of
+/// an action (answer_after()), void (then answers by Call::responder), or a receiver of the body.
 template <auto function, auto reader = nullptr>
 consteval Handle handle_of() {
   constexpr auto kCall = call_of<function, reader>;

@@ -16,8 +16,7 @@ namespace adit::api {
 
 /// The open pages, fed by server-sent events (HTML Living Standard 9.2). A page gets the whole view of the
 /// run, then its changes (codec/patch.hpp), the same for all pages, and heartbeats. Changes come once a
-/// second, changes of reports or alarms at most kEventsPerSecond times. A slow page with too many queued
-/// bytes gets the whole view again.
+/// second, those of reports or alarms at most kEventsPerSecond times. A slow page gets the whole view again.
 class RunStream {
  public:
   static constexpr int kEventsPerSecond = 4;

@@ -34,8 +34,7 @@ class Labels {
 
   /// No label will cover this.
   void keep_free(const Box& taken) { taken_.push_back(taken); }
-  /// A free place beside a sign of this radius at (x, y): right, left, above, below, then farther away.
-  /// nullopt: there is no room.
+  /// A free place by a sign of this radius at (x, y): right, left, above, below, then farther; nullopt: none.
   std::optional<Box> place(double x, double y, double radius, double width, double height);
 
  private:

@@ -26,8 +26,7 @@ inline constexpr std::size_t kLargestRecord = std::size_t{72} << 10;
 std::string frame_record(std::string_view body);
 
 /// Calls `told` with the body of each complete record in `bytes`, in order. Skips damaged bytes up to the
-/// next complete record or the end. Returns the number of damaged records, without a torn last one, which a
-/// killed process leaves.
+/// next one or the end. Returns the number of damaged records, without a torn last one, which a kill leaves.
 std::size_t for_each_record(std::string_view bytes, const std::function<void(std::string_view)>& told);
 
 /// Queued records of tracks, plots and events. Each write costs a flush of the disk, so records without news

@@ -71,8 +71,7 @@ class RunFolder {
     std::uint64_t bytes = 0;       // of the run
   };
   /// `most`: limit of the run in bytes; half of the available space also limits it. Removes first files
-  /// beyond the limit. After an error no lines were written; other data may have been, and may be written
-  /// again.
+  /// beyond it. After an error no lines were written; other data may have been, and may be written again.
   std::expected<WriteResult, std::string> write(const Batch& batch, std::uint64_t most);
   /// Removes that tile file if it is the first of several.
   void remove_first(std::uint64_t file);

@@ -172,8 +172,7 @@ void RunRecords::add(const Line& line, std::uint64_t /*file*/) {
   samples_.add(line);
 }
 
-/// Line files and tile files are read separately, so each records every step. A step may be recorded again
-/// after a failed write.
+/// Line and tile files are read separately, so each records every step. A failed write may repeat a step.
 void RunRecords::add(const Step& step, std::uint64_t file) {
   const bool of_tiles = file != 0;
   std::vector<Step>& told = of_tiles ? tile_steps_ : line_steps_;

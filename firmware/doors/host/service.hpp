@@ -58,14 +58,12 @@ auto parse_kept(const std::string& path, Parse parse)
   log_use_of_copy(path);
   return copied;
 }
-/// Overwrites an existing file, which needs no space on a full disk. After a crash, each sector of 512 bytes
-/// is the old or the new one.
+/// Overwrites an existing file, which needs no free space. After a crash, each 512-byte sector is old or new.
 std::expected<void, std::string> overwrite(const std::string& path, const std::string& text);
 /// Removes temporary files that a crash during write_file() left. Call before the first write there.
 void remove_unwritten(const std::string& folder);
 
-/// Calls `each` with the name of each entry, unordered, until it returns false. Errno: the directory cannot
-/// be read completely.
+/// Calls `each` with each entry's name, unordered, until it returns false. Errno: not read completely.
 std::expected<void, int> for_each_name(const std::string& folder,
                                        const std::function<bool(std::string_view)>& each);
 

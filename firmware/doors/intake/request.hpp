@@ -53,8 +53,7 @@ class ChunkReader {
   std::string_view trouble_;
 };
 
-/// The bytes of a stream that the client has not been sent. The request holds it, and the handler until it
-/// ends the answer.
+/// A stream's unsent bytes. The request holds it, and so does the handler until it ends the answer.
 class ReplyStream final : public Stream {
  public:
   void attach(Client& client, std::string_view content_type) {

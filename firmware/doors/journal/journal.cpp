@@ -148,8 +148,7 @@ bool HandoverState::read_markers(std::string_view said) {
   return true;
 }
 
-/// The sent markers are among the queued ones; newer changes come in later records. Earlier markers without
-/// an answer are queued again.
+/// The sent markers are among the queued ones; newer changes follow. Unanswered earlier markers queue again.
 bool HandoverState::read_sent(std::string_view said) {
   std::vector<std::tuple<std::string, std::int32_t, icd::MarkerAction>> sent;
   if (!store::read(said, sent)) return false;

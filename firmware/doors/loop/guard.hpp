@@ -7,16 +7,14 @@
 
 namespace adit::loop {
 
-/// Counts an exception that no code of the program handled, and reports it to the function of
-/// set_exception_logger(), or to stderr if there is no such function or it throws. `where`: the aborted work,
-/// as in "a job of a worker". Thread-safe.
+/// Counts an exception that nobody handled, and reports it to the function of set_exception_logger(), or to
+/// stderr without one or if it throws. `where`: the aborted work, as in "a job of a worker". Thread-safe.
 void log_exception(const char* where, const char* what) noexcept;
 
 /// The number of calls of log_exception() since the process start. Thread-safe.
 std::uint64_t exception_count() noexcept;
 
-/// Sets the function that reports such exceptions. It is called on the thread that caught the exception, and
-/// may throw. Null: stderr. Thread-safe.
+/// Sets the reporter of such exceptions, called on their thread. It may throw. Null: stderr. Thread-safe.
 void set_exception_logger(void (*told)(const char* where, const char* what)) noexcept;
 
 /// From now on an exception that leaves a callback of the loop or a noexcept function ends the process with

@@ -10,9 +10,8 @@
 
 namespace adit::panel {
 
-/// Sets the lights when they change, retries after a failure, and sets them again from time to time, because
-/// a vanished chip is only noticed when lights are set. It reads no clock: each call gets the time, which
-/// never runs backward.
+/// Sets the lights when they change, retries after a failure, and sets them now and then, because only that
+/// shows a vanished chip. It reads no clock: each call gets the time, which never runs backward.
 class Painter {
  public:
   static constexpr Milliseconds kAgain{500};     // after a failure

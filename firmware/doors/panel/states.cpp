@@ -37,8 +37,7 @@ constexpr auto kOff = Pattern::Off, kOn = Pattern::On, kSlow = Pattern::Slow, kF
                kDigits = Pattern::Digits;
 
 // The first asserted state is shown. The last action at the box comes first, then worse before better. Open
-// set-up precedes an operator's pending action, because its remaining time is shown here alone, and the
-// action on the page, too.
+// set-up precedes an operator's pending action, because its remaining time is shown only here.
 constexpr StateRow kTable[] = {
     {LightState::Fault,
      "fault",

@@ -62,9 +62,8 @@ class PartFile {
   bool named_ = false;
 };
 
-/// The file of a queued map, with the data first (codec::DataFirst). So data can be written as it arrives,
-/// and then mapped instead of held in memory. Use from one thread at a time. Functions that return int give
-/// errno, or 0.
+/// The file of a queued map, with the data first (codec::DataFirst), so that data can be written as it
+/// arrives and then mapped, not held in memory. Use from one thread at a time. An int result is errno, or 0.
 class MapFile {
  public:
   /// `path`: prefix of the temporary name until finish().
@@ -115,8 +114,7 @@ icd::Checked<icd::MapUpdate> read_map(const std::string& path);
 icd::Checked<icd::StateUpdate> read_state(const std::string& path);
 icd::Checked<icd::MarkersUpdate> read_markers(const std::string& path);
 
-/// The bounds of a grid as a JSON list of numbers: left, bottom, lowest, right, top, highest, turned, along
-/// the axes of the grid.
+/// A grid's bounds as a JSON list: left, bottom, lowest, right, top, highest, turned, along the grid's axes.
 codec::Value to_json(const icd::GridBounds& bounds);
 /// Reads them for `grid`. Bounds that are smaller than the grid are enlarged. Refuses damaged ones.
 icd::GridBounds read_bounds(const codec::Field& field, const icd::OccupancyGrid& grid);

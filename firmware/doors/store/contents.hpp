@@ -52,8 +52,7 @@ struct FileHeader {
   static std::optional<FileHeader> parse(std::string_view body);
 };
 
-/// The content of a log's directory in order: the newest whole snapshot, later records, and gaps in their
-/// places.
+/// A log directory's content in order: the newest whole snapshot, later records, and gaps in their places.
 class Contents {
  public:
   static constexpr std::uint64_t kAll = std::numeric_limits<std::uint64_t>::max();

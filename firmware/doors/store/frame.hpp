@@ -130,8 +130,7 @@ class Reader {
   bool ok_ = true;
 };
 
-/// Reads a struct of which an earlier version wrote only the first members, at least `oldest` of them. The
-/// others keep their values.
+/// Reads a struct with at least its first `oldest` members, of an earlier version. Others keep their values.
 template <std::size_t oldest, class Of>
 void read_first_members(auto& take, Of& value) {
   std::size_t place = 0;

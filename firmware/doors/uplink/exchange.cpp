@@ -255,9 +255,8 @@ constexpr std::size_t kChunksAtOnce = 17;
 /// Calls of listen() within answer_within.
 constexpr int kListenings = 8;
 
-/// RFC 9112 2.1. Sends no Expect, because the measured mapping server never answers it. Sends no chunks,
-/// because the length is known. The measured servers want a canonical `Bearer` and a content type without
-/// parameters.
+/// RFC 9112 2.1. Sends no Expect, which the measured mapping server never answers, and no chunks, because the
+/// length is known. The measured servers want a canonical `Bearer` and a content type without parameters.
 icd::ChunkedBytes head_of(const std::string& authority, const icd::BearerToken& token,
                           const Request& request) {
   std::string head = request.method + " " + request.target + " HTTP/1.1\r\n";

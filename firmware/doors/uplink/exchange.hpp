@@ -25,8 +25,7 @@ struct Request {
   /// may take. A part of an answer does not extend this time.
   std::chrono::milliseconds answer_within{10000};
   std::size_t longest_answer = kLongestAnswer;  // bytes of its body; the outcome of a longer one is InDoubt
-  /// The last kHeldBack bytes of the body are not sent before this time. The peer's silence does not count
-  /// until then.
+  /// The last kHeldBack bytes of the body leave no earlier. The peer's silence does not count until then.
   loop::Instant last_byte_not_before{};
   /// The peer has not yet answered another request on another connection, and may not read this one before.
   /// Its silence does not count until Connection::on_earlier_request_ended().

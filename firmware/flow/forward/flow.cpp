@@ -238,8 +238,7 @@ std::uint64_t Flow::sent_bytes() const {
 
 namespace {
 
-/// Bytes of the runtime directory without maps: the journal with its compaction, rejected messages, and other
-/// rooms' files.
+/// Bytes of the runtime directory without maps: journal and its compaction, rejected messages, other rooms.
 std::uint64_t bytes_without_maps(const settings::Settings& settings) {
   constexpr std::uint64_t kOthers = 8u << 20;
   return 4 * std::uint64_t{settings.queues.marker_bytes} + queues::RejectedMessages::kMostBytes + kOthers;

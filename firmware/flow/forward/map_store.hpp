@@ -50,8 +50,7 @@ class SpooledMapArrival final : public intake::MapArrival {
   std::shared_ptr<WriterFile> stored_ = std::make_shared<WriterFile>();
 };
 
-/// Maps in the spool: the writer stores a map before Adit accepts it, and deletes it once it is delivered,
-/// replaced or rejected. On the loop.
+/// Maps in the spool, stored before Adit accepts them, until delivered, replaced or rejected. On the loop.
 class MapStore {
  public:
   /// Maps with lower numbers are sent again by the operator. They are older than all others.

@@ -125,8 +125,7 @@ class Maps {
   bool is_heard_from() const;
   void pump() noexcept;
 
-  // Arrival: a map for which there is room is queued once it is stored. A worker then finds queued clouds
-  // that newer ones contain.
+  // Arrival: a map with room is queued once it is stored. A worker then finds clouds that newer ones contain.
   void accept(const std::shared_ptr<ReceivedMap>& map);
   bool has_room_for(const icd::MapUpdate& update, bool replaces) const;
   bool record_area(const icd::MapUpdate& update);

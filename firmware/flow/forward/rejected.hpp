@@ -18,8 +18,7 @@ namespace adit::forward {
 /// Rejected maps, states and markers, and maps that were put aside (queues::RejectedMessages), in a directory
 /// that survives the process: `N.cbor`, the message, and `N.json`, the reason. The writer writes in order.
 ///
-/// A message always has a file: its origin keeps the old file until on_stored(), and this store keeps the new
-/// one until the message is queued again.
+/// A message always has a file: its origin's until on_stored(), and this store's until it is queued again.
 class RejectedStore {
  public:
   /// The keeper of a message before its rejection. Both are called on the loop, not inside their own add().

@@ -13,8 +13,7 @@
 
 namespace adit::forward {
 
-/// What one map after the other may hold, by what the last ones showed: how fast the link takes bytes, and
-/// how small packing makes clouds.
+/// How large the next map may be, by the last ones: how fast the link takes bytes, and how small clouds pack.
 class Slot {
  public:
   static constexpr std::chrono::milliseconds kLongestLead{1500};

@@ -18,8 +18,7 @@
 
 namespace adit::forward {
 
-/// The states: accepts them, chooses the next message, and handles the verdict of its answer. Telemetry sends
-/// it.
+/// The states: accepts them, chooses the next message, and handles the verdict. Telemetry sends it.
 class States {
  public:
   /// A message in flight, which is not copied.
@@ -145,8 +144,7 @@ class Telemetry {
   void on_answered(Of& of, const typename Of::Sent& sent, std::size_t bytes, const uplink::Outcome& outcome);
   template <class Of>
   void classify(Of& of, const typename Of::Sent& sent, std::size_t bytes, const uplink::Outcome& outcome);
-  /// Finishes `sent` after its rejected predecessors are marked. Otherwise a kill could leave both unmarked,
-  /// and an operator could send the older one.
+  /// Finishes `sent` after its rejected predecessors are marked, so that no kill lets an operator send those.
   template <class Of>
   void replace(Of& of, const typename Of::Sent& sent);
   /// Rejects a single message. Among several it looks for the one at fault.

@@ -13,8 +13,7 @@
 
 namespace adit::applier {
 
-/// The work of adit-network: reads aditd's requests, executes them, writes the status, and stops the loop
-/// once no change is pending.
+/// adit-network's work: executes aditd's requests, writes the status, and ends once no change is pending.
 class Applier {
  public:
   /// Both must outlive this object.

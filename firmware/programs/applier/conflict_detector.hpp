@@ -78,8 +78,7 @@ class StatusReader {
   /// outlive this object.
   StatusReader(loop::Loop& loop, std::string folder, std::function<void()> changed);
 
-  /// Without a status: no endpoints. If the status cannot be read: logs that once, returns the last one, and
-  /// calls `changed` later.
+  /// Without a status: no endpoints. Unreadable: logs that once, returns the last one, calls `changed` later.
   const network::Status& read();
 
  private:

@@ -34,8 +34,7 @@ class Reload {
   bool is_due_ = false;  // as known to this process
 };
 
-/// The numbers as files of systemd-networkd. An interface with unchanged numbers is left alone. An address
-/// that another machine has is rejected.
+/// The numbers as systemd-networkd's files. Unchanged interfaces are left alone. Used addresses are rejected.
 class NetworkdFiles final : public network::NumbersSetter {
  public:
   using Prober = decltype(&probe);

@@ -278,8 +278,7 @@ std::expected<void, std::string> Rauc::start_booted_next() const {
   return mark(command_, "mark-active", "booted");
 }
 
-/// A slot marked bad leaves the boot loader's order. Otherwise the boot loader would try it three more times
-/// once no slot has tries left.
+/// A bad slot leaves the boot loader's order. Otherwise it gets three more tries once no slot has tries left.
 std::expected<void, std::string> Rauc::disable_other_slot() const {
   if (auto first = start_booted_next(); !first) return first;
   return mark(command_, "mark-bad", "other");

@@ -398,8 +398,7 @@ void add_endpoint_lines(const api::RunView& before, const api::RunView& now, Lin
 
 constexpr std::string_view kArrives = "arrives", kNotArriving = "NOT ARRIVING";
 
-/// In the order of facts::Arrival. Late is shown as arriving, because robots that share the link are late in
-/// turn.
+/// In the order of facts::Arrival. Late shows as arriving, because robots that share the link take turns.
 constexpr std::string_view kTold[] = {"none sent yet", kArrives,     kArrives,     kArrives, kNotArriving,
                                       kNotArriving,    kNotArriving, kNotArriving, kArrives, "silent"};
 static_assert(std::size(kTold) == std::size(facts::kArrivalWords));

@@ -194,8 +194,7 @@ struct Stamp {
 
 std::optional<Vector3> read_point(const Field& point);
 
-/// `pose` holds "position" and "orientation". A quaternion that is not of length 1 is no rotation, though the
-/// measured server takes it.
+/// `pose` has "position" and "orientation": a quaternion of length 1 (the measured server takes any).
 std::optional<Placement> read_pose(const Field& pose);
 
 /// The optional "header" of `message` (ICD 6.1, 6.2): frame_id must be "darpa"; a stamp is added to `stamps`.

@@ -209,8 +209,7 @@ OrderResult put_word(const Word& word, Fault& fault) {
                ", answer-after, record-after, remaining, other-sender, retry-after, for, robot");
 }
 
-/// Reads "record-then-drop", "429=3,retry-after=2", "ok": words with a comma between them. An error is a
-/// sentence that names the word.
+/// Reads words with commas: "record-then-drop", "429=3,retry-after=2", "ok". An error names the word.
 std::expected<Fault, std::string> read_fault(std::string_view words) {
   Fault fault;
   if (words == kOk) return fault;

@@ -70,8 +70,7 @@ struct Secrets {
   std::string mapping;
 };
 
-/// A whole Command Post, but for its sockets: both endpoints, the run, the record and the transcript. Safe
-/// for use by several threads.
+/// A Command Post without its sockets: endpoints, run, record and transcript. Thread-safe.
 class CommandPost {
  public:
   /// `transcript` may be null.

@@ -60,8 +60,7 @@ bool is_success(MessageKind kind, int status) {
   return status == 200 || (kind == MessageKind::Report && status == 201);
 }
 
-/// Whether Access-Control-Allow-Headers names `header`. By the Fetch standard "*" does not stand for
-/// Authorization, so it has to be named.
+/// Whether Access-Control-Allow-Headers names `header`. "*" does not cover Authorization (Fetch standard).
 bool allows(std::string headers, std::string_view header) {
   std::ranges::transform(headers, headers.begin(), icd::lower);
   return headers.contains(header);

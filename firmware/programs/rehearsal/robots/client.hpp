@@ -148,8 +148,7 @@ inline void sleep_until(std::chrono::steady_clock::time_point time, const std::s
   (void)never.wait_until(lock, stop, time, [] { return false; });
 }
 
-/// Submits the robots' findings for the operator, each artifact once, one report after another. Also asks for
-/// the run's status now and then.
+/// Submits the robots' findings for the operator, each once, in turn. Asks for the status now and then.
 class OperatorClient {
  public:
   /// `say` prints a line. `style`, in which it asks for the status, and `tally` must outlive this object.

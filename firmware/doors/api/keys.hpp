@@ -59,7 +59,7 @@ class Keys {
   virtual void check(std::string password, std::string address,
                      std::function<void(std::optional<access::Role>)> done) = 0;
 
-  /// Sets a role's password, which passed access::check_new(). std::nullopt removes it (the viewer's only).
+  /// Sets a role's password, which must have passed access::check_new(). std::nullopt removes a viewer's.
   /// Error: 409 while another is being set, 422 if the other role has it, 503 if it cannot be stored.
   virtual void set(access::Role role, std::optional<std::string> password,
                    std::function<void(icd::Checked<void>)> done) = 0;

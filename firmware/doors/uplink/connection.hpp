@@ -89,7 +89,7 @@ class Connection {
   /// `server`: at this endpoint; null: other connections to it are unknown.
   Connection(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token,
              std::shared_ptr<Server> server = nullptr);
-  /// A second connection to this endpoint with the same measurements. Only one may have bytes to send.
+  /// A second connection to this endpoint with the same measurements. Only one at a time may send bytes.
   std::unique_ptr<Connection> another() const;
   ~Connection();
   Connection(const Connection&) = delete;

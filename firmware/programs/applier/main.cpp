@@ -36,7 +36,7 @@ namespace {
 /// writes them to network::kTakenFile. Runs until the box stops. Interfaces may come and go.
 class AddressWatch {
  public:
-  /// Packets read at once, before a pause. In a flood the kernel drops packets, which costs no CPU time here.
+  /// Packets read at once, and the pause then. In a flood the kernel drops packets, at no CPU time here.
   static constexpr int kMostAtOnce = 64;
   static constexpr std::chrono::milliseconds kRest{100};
   /// Least time between two writes of the file, and between two log lines about an interface.

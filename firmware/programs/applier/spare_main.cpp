@@ -99,7 +99,7 @@ class SpareKeeper {
     return written ? "" : written.error();
   }
 
-  /// Compares with the stick's content. After the unmount, the kernel's memory holds none of the file.
+  /// Compares with the stick's content. The unmount emptied the cache, so the bytes come from the stick.
   std::string check(const spare::Medium& medium, const std::string& name, const std::string& bytes) {
     const auto kept = read_export(sticks_.folder(medium.name), name);
     if (kept && *kept == bytes) return "";

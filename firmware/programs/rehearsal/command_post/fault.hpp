@@ -80,8 +80,8 @@ class Faults {
   void clear();
 
   /// The fault for a request with `body`; one that behaves if none waits, or if `body` does not name the next
-  /// fault's robot. After a fault with a wrong remaining_reports, each later one for Status has it;
-  /// while the clocks stand, so has each one for Status and Reports.
+  /// fault's robot. After a fault with a wrong remaining_reports, each later one for Status has it; while the
+  /// clocks stand, so has each one for Status and Reports.
   Fault next(Aim aim, std::string_view body, Clock::time_point now);
 
   /// The waiting faults, the random ones, the error of remaining_reports, and whether the clocks run.

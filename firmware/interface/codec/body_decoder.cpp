@@ -43,8 +43,7 @@ std::unique_ptr<Splitter> splitter_for(Format format, Split split, const Limits&
   return std::make_unique<JsonSplitter>(split, most, data);
 }
 
-/// Limit for an inflated body. Data takes at most four characters for a byte, as integers of an array. Only
-/// here, white space counts too.
+/// Data takes at most four characters for a byte, as integers of an array. Only here, white space counts.
 std::size_t most_inflated(Split split, const Limits& limits) {
   if (split != Split::MapData) return limits.text_bytes;
   constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max();

@@ -42,7 +42,6 @@ enum class Split : std::uint8_t {
   Lists,    // array elements, each parsed on demand (List)
 };
 
-/// Form of the bulk data in the body.
 enum class DataForm : std::uint8_t {
   Absent,
   Base64,      // decoded JSON string

@@ -32,8 +32,7 @@ icd::Checked<void> BulkData::check_size(std::uint64_t bytes) const {
 icd::Checked<void> BulkData::append(std::span<const std::uint8_t> bytes) {
   if (auto fit = check_size(bytes.size()); !fit) return fit;
   if (bytes.empty()) return {};
-  constexpr std::uint8_t kGzip = 0x1F;  // RFC 1952 2.3.1; a grid whose first cell has this value is
-                                        // compressed later
+  constexpr std::uint8_t kGzip = 0x1F;  // RFC 1952 2.3.1; a grid that begins so is compressed later
   if (came_ == 0 && is_grid_ && bytes.front() != kGzip) press_.emplace();
   came_ += bytes.size();
   if (press_) {

@@ -15,13 +15,11 @@
 
 namespace adit::codec {
 
-/// Compresses and checks a grid's cells on arrival, so that little work is left at the end and raw cells are
-/// not held.
+/// Compresses and checks a grid's cells on arrival, so that the end is quick and no raw cells are held.
 class CellPress {
  public:
   void feed(std::span<const std::uint8_t> cells);
 
-  /// Bytes that take_some() would return.
   std::size_t available() const { return gzipper_.available(); }
   /// The gzip member's bytes since the last take_some().
   icd::ChunkedBytes take_some() { return gzipper_.take_some(); }
@@ -37,8 +35,7 @@ class CellPress {
   icd::Checked<void> checked_;
 };
 
-/// Receives the value at "msg.data" while the rest of the body arrives. Errors: 422 about msg.data, or 413
-/// over the limit.
+/// Receives the value at "msg.data" while the body arrives. Errors: 422 about msg.data, 413 over the limit.
 class BulkData {
  public:
   explicit BulkData(std::size_t most) : most_(most) {}
@@ -59,13 +56,11 @@ class BulkData {
   /// Appends an array element: a whole number from -1 (stored as 255) to 255. `text`: its form in the body.
   icd::Checked<void> append_element(double value, std::string_view text);
   icd::Checked<void> append_element(std::uint8_t byte);
-  /// Appends `count` equal elements.
   icd::Checked<void> append_elements(std::uint8_t byte, std::size_t count);
   /// The refusal of an element that is not a number.
   icd::Refusal bad_element(std::string_view got) const;
 
   DataForm form() const { return form_; }
-  /// Bytes that take_some() would return.
   std::size_t available() const { return press_ ? press_->available() : bytes_.size(); }
   /// Data since the last take_some(), except the last few array elements.
   icd::ChunkedBytes take_some() { return press_ ? press_->take_some() : std::move(bytes_); }

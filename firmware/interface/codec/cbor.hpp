@@ -13,8 +13,7 @@
 
 namespace adit::codec {
 
-/// Whether a registered tag only annotates its content, so that a text, number, byte string, array or map
-/// keeps its meaning.
+/// Whether a registered tag only annotates: a text, number, bytes, an array or a map keeps its meaning.
 bool is_remark(std::uint64_t tag);
 
 /// Whether a tag refers to an earlier text or value, so that a member's name may be under it.
@@ -34,7 +33,6 @@ class CborHead {
 
   bool empty() const { return size_ == 0; }
   bool complete() const { return size_ > 0 && size_ == length(); }
-  /// Prepares for the next head.
   void clear() { size_ = 0; }
 
   // For a complete head:
@@ -58,8 +56,7 @@ class CborHead {
   std::size_t size_ = 0;
 };
 
-/// Writes CBOR items (RFC 8949) with the shortest definite lengths (4.1). The caller must write as many items
-/// as announced.
+/// Writes CBOR (RFC 8949) with the shortest definite lengths (4.1). Write as many items as announced.
 class CborWriter {
  public:
   void map(std::size_t members) { head(Major::Map, members); }

@@ -16,7 +16,7 @@ namespace adit::codec {
 
 /// Checks that CBOR (RFC 8949) is well-formed (section 5.3.1), texts are UTF-8, and nesting, with tags, is
 /// not too deep. Never trusts a length before its bytes arrive. Drops tags that only annotate their value. A
-/// value under another tag becomes UnderTag.
+/// value under another tag becomes TaggedValue.
 class CborSplitter final : public Splitter {
  public:
   /// `data` must outlive this object.
@@ -91,8 +91,7 @@ class CborSplitter final : public Splitter {
 
   std::size_t left_out_of_ = 0;  // nesting depth of the tag whose value is dropped
 
-  /// The document without annotating tags. The map's data is null. Simple values without meaning (RFC 8949
-  /// 3.3) are undefined.
+  /// No annotating tags; the map's data is null; simple values without meaning (RFC 8949 3.3) are undefined.
   KeptText rest_;
 };
 

@@ -67,8 +67,7 @@ icd::Checked<void> CborSplitter::element() {
   return std::unexpected(data_.bad_element(element_kind(head_)));
 }
 
-/// Fast path for elements in their usual form. Leaves the last element of a known length, which ends the
-/// array.
+/// Fast path for elements in their usual form. Leaves the last one of a known length, which ends the array.
 icd::Checked<std::size_t> CborSplitter::plain_elements(std::string_view in) {
   std::string_view left = in;
   Nest& list = nests_.back();

@@ -14,8 +14,7 @@ namespace {
 
 constexpr std::size_t kInflatedPiece = 32UL * 1024;
 
-/// RFC 1950 2.2: method deflate, a window of at most 32 KiB, and a check value. Raw deflate from compressors
-/// never begins so.
+/// RFC 1950 2.2: deflate, window of at most 32 KiB, check value. Raw deflate of compressors never begins so.
 bool has_zlib_header(std::string_view head) {
   const auto cmf = static_cast<unsigned char>(head[0]);
   const auto flags = static_cast<unsigned char>(head[1]);

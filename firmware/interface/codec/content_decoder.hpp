@@ -14,8 +14,7 @@ struct z_stream_s;
 namespace adit::codec {
 
 /// Decodes a Content-Encoding (RFC 9110 8.4.1) on arrival: gzip with one or more members (RFC 1952 2.2), or
-/// one deflate stream with or without zlib's wrapping, without further data. Errors: 400, or 413 over the
-/// limit for all members together.
+/// exactly one deflate stream, raw or in zlib's wrapping. Errors: 400, 413 over the limit of all members.
 class ContentDecoder {
  public:
   using Sink = std::function<icd::Checked<void>(std::string_view)>;
@@ -25,7 +24,6 @@ class ContentDecoder {
 
   icd::Checked<void> feed(std::string_view bytes);
   icd::Checked<void> finish();
-  /// Bytes passed to `sink`.
   std::size_t decoded_bytes() const { return given_; }
 
  private:

@@ -55,8 +55,7 @@ class Field {
   Field& operator=(const Field&) = delete;
   ~Field() = default;
 
-  /// A member of an object. Refuses if this is absent or not an object, or has the member twice (RFC 8259 4
-  /// does not say which one counts).
+  /// Refuses if this is absent, no object, or has the member twice (RFC 8259 4 leaves open which counts).
   Field member(std::string_view name) const&;
   Field member(std::string_view name) const&& = delete;
 
@@ -93,8 +92,7 @@ class Field {
     return static_cast<Integer>(read_integer(least, most));
   }
 
-  /// A string without NUL characters. In CBOR a byte string of UTF-8 is allowed, because Python 2 writes text
-  /// so.
+  /// A string without NUL. In CBOR a byte string of UTF-8 is allowed, because Python 2 writes text so.
   std::string_view text() const;
   /// Whether it is such a string without characters.
   bool is_empty_text() const { return characters() == std::string_view(); }
@@ -126,7 +124,6 @@ class Field {
 
   Field(const Value* value, const Field* parent, std::string_view name, std::size_t index, Reading& reading)
       : value_(value), parent_(parent), name_(name), index_(index), reading_(reading) {}
-  /// An element that owns its value.
   Field(std::unique_ptr<const Value> own, const Field* parent, std::size_t index, Reading& reading)
       : own_(std::move(own)), value_(own_.get()), parent_(parent), index_(index), reading_(reading) {}
 

@@ -51,8 +51,7 @@ class Gzipper {
 /// One gzip member. Consumes `bytes` chunk by chunk.
 icd::ChunkedBytes gzip(icd::ChunkedBytes bytes, GzipStrategy strategy);
 
-/// The size in the last member's ISIZE (RFC 1952 2.3.1, modulo 2^32), which is right if gunzip() accepts the
-/// member. 0 if `bytes` is too short.
+/// The last member's ISIZE (RFC 1952 2.3.1, modulo 2^32), right if gunzip() accepts it. 0: `bytes` too short.
 std::size_t claimed_size(const icd::ChunkedBytes& bytes);
 
 /// Receives inflated pieces and may refuse them.
@@ -63,9 +62,8 @@ struct Gunzipped {
   std::size_t size = 0, members = 0;
 };
 
-/// Inflates gzip with one or more members (RFC 1952 2.2) into `sink`, consuming `bytes`. Error 422 about the
-/// field at `path`: not gzip, truncated, a bad checksum, or other data after the last member. Error 413: more
-/// than `most` inflated bytes.
+/// Inflates gzip of one or more members (RFC 1952 2.2) into `sink`, consuming `bytes`. Error 422 about
+/// `path`: not gzip, truncated, a bad checksum, data after the last member. 413: over `most` inflated bytes.
 icd::Checked<Gunzipped> gunzip(icd::ChunkedBytes bytes, std::size_t most, std::string_view path,
                                const Sink& sink);
 
@@ -80,9 +78,8 @@ inline constexpr int kFastestLevel = 1, kSmallestLevel = 12;
 /// MiB above. For data in pieces, use Gzipper. CPU time grows with the size of `bytes`.
 std::optional<icd::ChunkedBytes> gzip(std::span<const std::uint8_t> bytes, int level, std::size_t most);
 
-/// The `size` bytes of exactly one gzip member, in a tenth of gunzip()'s time for a grid. std::nullopt if it
-/// is invalid, damaged, or of another size. Takes `size` bytes of memory, and a copy of a member in several
-/// chunks.
+/// The `size` bytes of exactly one gzip member, in a tenth of gunzip()'s time for a grid. std::nullopt:
+/// invalid, damaged, or another size. Takes `size` bytes of memory, and a copy of a member in several chunks.
 std::optional<std::vector<std::uint8_t>> gunzip(const icd::ChunkedBytes& member, std::size_t size);
 
 /// Passes a map's data, inflated if compressed, to `sink` in pieces of at most icd::ChunkedBytes::kChunk. An

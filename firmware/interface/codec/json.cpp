@@ -16,8 +16,7 @@
 namespace adit::codec {
 namespace {
 
-/// Length of a short number without exponent at the start of `text`, which fits a double. 0: not such a
-/// number.
+/// Length of a short number without exponent at the start of `text`, which fits a double. 0: no such number.
 std::size_t plain_number(std::string_view text) {
   constexpr std::size_t kShort = 15;
   JsonNumber grammar;
@@ -79,9 +78,8 @@ Value value_of(const cJSON& item) {
   return {};
 }
 
-/// Reads a document with cJSON if it has only features that cJSON reads like RFC 8259: ASCII without escapes,
-/// little nesting, short numbers. Most documents in one piece are so. std::nullopt: another document, or not
-/// well-formed.
+/// Reads with cJSON if the document has only features that cJSON reads like RFC 8259: ASCII without escapes,
+/// little nesting, short numbers, as most documents. std::nullopt: others, or not well-formed.
 std::optional<Value> plain_json(std::string_view text) {
   if (!is_plain(text)) return std::nullopt;
   constexpr bool kNothingAfter = true;

@@ -49,8 +49,7 @@ class JsonNumber {
 /// Whether the valid number `text`, which `grammar` has read, is in a double's range.
 bool is_finite(const JsonNumber& grammar, std::string_view text);
 
-/// Removes the valid number at the start of `text` and returns it as the nearest double; 0 or infinite if out
-/// of range.
+/// Takes the valid number off the start of `text`, as the nearest double; 0 or infinite if out of range.
 double take_json_number(std::string_view& text);
 
 }  // namespace adit::codec

@@ -34,8 +34,7 @@ class JsonString {
     bool ended = false;     // the closing quotation mark was read
   };
 
-  /// The next run of characters, or the next escape. Requires !in.empty(). The views are valid until the next
-  /// call.
+  /// The next run of characters, or escape. Requires !in.empty(). The views are valid until the next call.
   std::expected<Piece, Fault> next(std::string_view in);
   /// Whether it is outside escapes and characters, so that plain ASCII stands for itself.
   bool is_between_characters() const { return escape_.empty() && utf8_.complete(); }
@@ -73,7 +72,6 @@ class JsonSplitter final : public Splitter {
     SharedText text;
     Value root;
   };
-  /// The present number so far.
   struct Number {
     JsonNumber grammar;
     std::string text;

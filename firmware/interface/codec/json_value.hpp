@@ -13,7 +13,7 @@ namespace adit::codec {
 /// than `most_values` values, or nesting beyond BodyDecoder::kDeepest; JsonSplitter tells which.
 std::optional<Value> json_value(std::string_view text,
                                 std::size_t most_values = std::numeric_limits<std::size_t>::max());
-/// The same, whose arrays are left as text, and of which at most kMostOutsideLists values are outside them.
+/// The same with arrays left as text. At most kMostOutsideLists values are outside of them.
 std::optional<Value> json_value_with_lists(const SharedText& text, std::size_t most_values);
 
 /// A JSON number: an integer if it stands for exactly one.

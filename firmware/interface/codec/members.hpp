@@ -67,8 +67,7 @@ struct NamedMember {
   T Struct::* at;
   Presence need = Presence::Always;
   Bound least = Limits::has_infinity ? -Limits::infinity() : Limits::lowest();  // of a number
-  Bound most = Limits::has_infinity ? Limits::infinity() : Limits::max();       // value of a number, count or
-                                                                                // length
+  Bound most = Limits::has_infinity ? Limits::infinity() : Limits::max();       // of a number, count, length
   std::string_view unit = "";  // of `most` in a sentence: " bytes"
   bool is_time = false;        // Field::seconds()
 
@@ -204,8 +203,7 @@ inline constexpr auto kNamesOfReals = std::apply(
     },
     members_of<Struct>);
 
-/// Reads such a struct from element `index` of `list` if it has exactly these members within their bounds.
-/// False: use the general reader.
+/// Reads such a struct if the element has exactly these members within bounds. False: use the general reader.
 template <class Struct>
 bool read_reals(const Field& list, std::size_t index, Struct& into) {
   constexpr auto& names = kNamesOfReals<Struct>;
@@ -245,7 +243,6 @@ void read_members(const Field& object, Struct& into, const icd::Rules& rules) {
   }
 }
 
-/// Number of members that write_members() writes.
 template <class Struct>
 std::size_t count_written(const Struct& from) {
   return std::apply([&](const auto&... each) { return (each.count_written(from) + ...); },
@@ -344,8 +341,7 @@ inline constexpr auto members_of<icd::Marker> = std::tuple(  // 6.6
     named("color", &icd::Marker::color).needed(Presence::ToAdd),
     named("lifetime", &icd::Marker::lifetime).time_to(icd::kLongestLifetime).needed(Presence::MayLack),
     named("text", &icd::Marker::text).needed(Presence::MayLack),
-    // ROS's further members of a Marker. The number of colors may differ from the number of points; viewers
-    // then ignore the colors.
+    // ROS's further members of a Marker. Viewers ignore colors whose number differs from that of the points.
     named("frame_locked", &icd::Marker::frame_locked).needed(Presence::IfSaid),
     named("points", &icd::Marker::points).to(icd::kMostMarkerPoints).needed(Presence::IfSaid),
     named("colors", &icd::Marker::colors).to(icd::kMostMarkerPoints).needed(Presence::IfSaid),

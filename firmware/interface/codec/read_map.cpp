@@ -33,9 +33,8 @@ bool take_place(std::span<Place> bytes, const Place& value) {
   return true;
 }
 
-/// For each byte of a little-endian point, the index of the big-endian byte. Swaps every value and leaves
-/// padding. std::nullopt if two values overlap, because no swapped point preserves both. Requires
-/// check(cloud).
+/// For each byte of a little-endian point, the index of the big-endian byte; padding stays. std::nullopt if
+/// two values overlap, because no swapped point preserves both. Requires check(cloud).
 std::optional<std::vector<std::uint32_t>> little_endian_order(const icd::PointCloud2& cloud) {
   std::vector<Place> bytes(cloud.point_step);
   std::vector<std::uint32_t> order(cloud.point_step);
@@ -54,8 +53,7 @@ std::optional<std::vector<std::uint32_t>> little_endian_order(const icd::PointCl
   return order;
 }
 
-/// Reorders the bytes of points; consumes `points` chunk by chunk. Bytes after the last whole point stay.
-/// Requires an order that is not empty.
+/// Reorders the bytes of points; consumes `points`. Bytes after the last point stay. Requires !order.empty().
 icd::ChunkedBytes reorder(icd::ChunkedBytes points, const std::vector<std::uint32_t>& order) {
   icd::require(!order.empty());
   icd::ChunkedBytes turned;
@@ -77,8 +75,7 @@ icd::ChunkedBytes reorder(icd::ChunkedBytes points, const std::vector<std::uint3
   return turned;
 }
 
-// The rest reads a map's data in the message's `compression`, after the other fields were checked, and
-// consumes it chunk by chunk.
+// The rest reads a map's data after the other fields were checked, and consumes it chunk by chunk.
 
 constexpr std::string_view kPath = "msg.data";
 
@@ -105,7 +102,6 @@ class CellCheck {
   std::size_t taken_ = 0;
 };
 
-/// A grid's data in the sent form.
 icd::MapData press_grid(Gzipper& gzipper, const icd::OccupancyGrid& grid) {
   return {.bytes = gzipper.finish(), .compression = icd::Compression::Gzip, .raw_size = icd::cells_of(grid)};
 }
@@ -117,9 +113,8 @@ bool has_plain_head(const icd::ChunkedBytes& member) {
   return first.size() > kFlags && first[kFlags] == 0;
 }
 
-/// Checks the cells first. Preserves the sender's member if it is smaller, because many senders compress
-/// better. If the data claims another size, it has several members or is invalid: the first pass then only
-/// checks it.
+/// Checks the cells first. Keeps the sender's member if it is smaller, because many senders compress better.
+/// If the data claims another size, it has several members or is invalid: the first pass only checks it.
 icd::Checked<icd::MapData> read_gzipped_cells(const icd::OccupancyGrid& grid, icd::ChunkedBytes data,
                                               const icd::Rules& rules) {
   for (bool is_kept = claimed_size(data) == icd::cells_of(grid);; is_kept = true) {
@@ -205,8 +200,7 @@ icd::Checked<icd::MapData> read_cells(const icd::OccupancyGrid& grid, icd::Chunk
 /// The same for cells compressed on arrival.
 icd::Checked<icd::MapData> read_pressed_cells(const icd::OccupancyGrid& grid, icd::ChunkedBytes data,
                                               icd::Compression compression, const PressedCells& pressed) {
-  if (compression == icd::Compression::Gzip) {  // gunzip()'s error, because these cells do not begin like
-                                                // gzip
+  if (compression == icd::Compression::Gzip) {  // gunzip()'s error: the cells do not begin like gzip
     return icd::unprocessable(kPath, ": expected a gzip member, got ",
                               pressed.count < 2 ? "one that is cut short" : "incorrect header check");
   }
@@ -216,9 +210,8 @@ icd::Checked<icd::MapData> read_pressed_cells(const icd::OccupancyGrid& grid, ic
       .bytes = std::move(data), .compression = icd::Compression::Gzip, .raw_size = pressed.count};
 }
 
-/// ICD 6.3.2: a whole number of points, unchanged, without padding at row ends. Drivers fill `rows` with
-/// wrong values (row_step 0, the size of all data, the number of points), so rows count only if they are
-/// padded and match the size of the data.
+/// ICD 6.3.2: a whole number of points, unchanged, without padding at row ends. Drivers fill `rows` wrongly
+/// (row_step 0, size of all data, number of points): rows count only if padded and of the data's size.
 icd::Checked<icd::MapData> read_points(const icd::PointCloud2& cloud, const CloudRows& rows,
                                        icd::ChunkedBytes data, icd::Compression compression,
                                        const icd::Rules& rules) {
@@ -260,7 +253,6 @@ void require_data(const Field& data) {
   if (!data.is<Value::SplitOut>()) data.refuse_kind("a base64 string (JSON) or a byte string (CBOR)");
 }
 
-/// Reads a grid or cloud and checks its rules.
 template <class Map>
 Map read_msg(const Field& msg, const icd::Rules& rules) {
   Map map;
@@ -330,8 +322,7 @@ icd::Checked<icd::MapData> read_data(const icd::MapUpdate& update, Document docu
                           : read_cells(grid, std::move(document.data), compression, rules);
 }
 
-/// Checks Adit's stored form (read.hpp: grids as gzip, clouds raw) as far as possible without reading the
-/// data.
+/// Checks Adit's stored form (read.hpp: grids as gzip, clouds raw) as far as possible without the data.
 icd::Checked<void> check_form(const icd::MapUpdate& map) {
   const auto* const cloud = std::get_if<icd::PointCloud2>(&map.msg);
   const auto expected = cloud == nullptr ? icd::Compression::Gzip : icd::Compression::None;

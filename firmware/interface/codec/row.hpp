@@ -93,7 +93,6 @@ struct Form {
   std::string_view range;  // "an IPv4 address"
 };
 
-/// One member of a row.
 struct Member {
   std::string_view name;     // "": a row whose members are among these
   std::string_view meaning;  // beyond the name: unit, meaning of "" or 0
@@ -140,8 +139,7 @@ consteval Row complete(const Row& row) {
 
 Value write_row(const Row& row, const void* from);
 void read_row(const Row& row, const Field& field, void* into);
-/// Reads a member of the row `into`. Refuses a value that is not among its words, or not within its form or
-/// bounds.
+/// Reads a member of the row `into`. Refuses a value outside of its words, form or bounds.
 void read_member(const Member& member, const Field& field, void* into);
 /// Changes all reals in the row and its rows, except those of exact members.
 void change_numbers(const Row& row, void* in, double (*changed)(double));
@@ -223,7 +221,6 @@ struct KindOf<std::chrono::duration<Count, Period>> : Equal {
   static constexpr Schema schema = {.type = "integer"};
 };
 
-/// Any value.
 template <>
 struct KindOf<Value> : Equal {
   static Value write(const Value& value) { return value; }
@@ -257,7 +254,6 @@ struct KindOf<Count> : Equal {
   static constexpr Schema schema = {.type = "integer", .least = 0};
 };
 
-/// The kind of a row described by `kRow`.
 template <class T, const Row& kRow>
 struct KindOfRow {
   static Value write(const T& row) { return write_row(kRow, &row); }
@@ -357,7 +353,6 @@ struct KindOf<std::vector<T>> {
 };
 
 inline constexpr Schema kTextOrNullSchema = KindOf<std::string>::schema.nullable();
-/// Text; null if empty.
 inline constexpr RowKind kTextOrNull = {
     .write = [](const void* value) -> Value {
       const auto& all = *static_cast<const std::string*>(value);
@@ -417,14 +412,12 @@ template <class T>
 Value json(const T& value) {
   return KindOf<T>::write(value);
 }
-/// The same as text.
 template <class T>
 std::string to_json(const T& value) {
   return write_json(json(value));
 }
 
-// Small files of aditd and root programs, for messages and stored state. Each is one row as a JSON object
-// with the member "format": 1.
+// Small files of aditd and root programs: messages and state. Each is a row as JSON with "format": 1.
 
 std::string write_row_file(const Row& row, const void* from);
 /// A sentence about the first error, or "".
@@ -435,8 +428,7 @@ std::string write_file(const T& row) {
   return write_row_file(T::kRow, &row);
 }
 
-/// Strict, in nested rows as well. Errors name the member: missing, unknown, not among its words, out of
-/// bounds, or invalid.
+/// Strict, also in nested rows. Errors name the member: missing, unknown, or outside words, form or bounds.
 template <class T>
 std::expected<T, std::string> read_file(std::string_view json) {
   T row;

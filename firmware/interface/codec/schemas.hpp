@@ -10,8 +10,7 @@
 
 namespace adit::codec {
 
-/// OpenAPI's components.schemas of rows: {"Report": {"type": "object", ...}, ...}. Computed by the compiler;
-/// an unsupported schema stops the build.
+/// OpenAPI's components.schemas of rows: {"Report": {...}, ...}. An unsupported schema stops the build.
 class Schemas {
  public:
   static constexpr std::size_t kLongest = 49152;
@@ -58,7 +57,6 @@ class Schemas {
     for (std::size_t i = 0; i < size; ++i) to[i] = from[i];
     size_ += size;
   }
-  /// Starts the next item of an object or array.
   constexpr void begin_item() {
     if (text_[size_ - 1] != '{' && text_[size_ - 1] != '[') add(",");
   }

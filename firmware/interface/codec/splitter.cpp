@@ -71,7 +71,6 @@ std::size_t repeated_length(std::string_view text, std::size_t period) {
   return n;
 }
 
-/// One element of the text.
 struct Element {
   std::uint8_t value = 0;
   std::size_t end = 0;  // after its last character

@@ -20,8 +20,7 @@ struct DocumentLimits {
   std::string_view but = "";                                     // " without msg.data", for a sentence
 };
 
-/// Checks a document on arrival, passes the map's data to a BulkData, and stores the rest for parsing. One
-/// class for each format.
+/// Checks a document of one format on arrival, passes the map's data to a BulkData, and stores the rest.
 class Splitter {
  public:
   Splitter() = default;
@@ -74,13 +73,11 @@ struct PlainElements {
 };
 
 /// Removes elements and their commas from the start of a JSON array in `text`: integers from 0 to 255 or -1,
-/// with white space. Takes elements together if their text is the same, because a map's cells mostly equal
-/// their neighbours. std::nullopt, with `text` unchanged, if there is no such element with a comma; the
-/// general reader decides then.
+/// with white space. Takes equal texts together, because a map's cells mostly equal their neighbours.
+/// std::nullopt, with `text` unchanged: no such element with a comma; use the general reader.
 std::optional<PlainElements> take_plain_elements(std::string_view& text);
 
-/// The same for a CBOR array: elements of one or two bytes, 0 to 255 or -1 (RFC 8949 3.1), at most `most`.
-/// Requires most > 0.
+/// The same for a CBOR array: elements of one or two bytes, 0 to 255 or -1 (RFC 8949 3.1). Requires most > 0.
 std::optional<PlainElements> take_plain_cbor_elements(std::string_view& bytes, std::uint64_t most);
 
 }  // namespace adit::codec

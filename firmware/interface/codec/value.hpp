@@ -24,8 +24,7 @@ struct Value {
     std::vector<std::uint8_t> bytes;
     friend bool operator==(const Bytes&, const Bytes&) = default;
   };
-  /// Replaces a value under a CBOR tag that changes its meaning. The tag is an error only if the member is
-  /// read.
+  /// Replaces a value under a CBOR tag that changes its meaning: an error only if the member is read.
   struct TaggedValue {
     std::uint64_t tag = 0;
     friend bool operator==(TaggedValue, TaggedValue) = default;

@@ -14,8 +14,7 @@ inline constexpr std::string_view kCbor = "application/cbor";
 
 /// The canonical form of each message to the Command Post. Mapping: CBOR (RFC 8949 4.1, preferred lengths),
 /// always with name, header {stamp, frame_id}, ns and id; members of a marker outside the ICD only if set.
-/// Scoring: JSON, with each <float> in the fewest digits that preserve the double, with a point or an
-/// exponent.
+/// Scoring: JSON, each <float> in the fewest digits that preserve the double, with a point or exponent.
 
 /// Shares the chunks of `update.data`. "compression" is "gzip" or "none", as in update.data.
 icd::ChunkedBytes write_map_update(const icd::MapUpdate& update);

@@ -29,8 +29,7 @@ std::string insert_before_letters(std::string_view token, std::string_view lette
   return text;
 }
 
-/// ASCII in UTF-16 as bytes; other characters become bytes that no token has. `high`: the place of the high
-/// byte in each pair.
+/// ASCII in UTF-16 as bytes; others become bytes that no token has. `high`: place of the high byte in a pair.
 std::string decode_utf_16(std::string_view pairs, std::size_t high) {
   std::string text;
   for (; pairs.size() >= 2; pairs.remove_prefix(2)) text += pairs[high] == '\0' ? pairs[1 - high] : '\0';

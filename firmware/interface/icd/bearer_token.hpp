@@ -48,8 +48,7 @@ bool same(const std::optional<BearerToken>& one, const std::optional<BearerToken
 /// The time does not depend on which token matches.
 bool is_one_of(std::span<const BearerToken> tokens, std::string_view presented);
 
-/// The token in the value of an Authorization header: `Bearer <token>`, the scheme in any letter case (RFC
-/// 9110 11.1). Empty if there is none.
+/// The token of an Authorization header: `Bearer <token>`, the scheme in any case (RFC 9110 11.1); or "".
 std::string_view token_in(std::string_view authorization);
 
 /// Replaces the box's secrets in texts that others read. A secret may be anywhere, for example in a marker's

@@ -26,11 +26,8 @@ class Chunk {
   std::span<const std::uint8_t> bytes_;
 };
 
-/// Bytes in chunks of at most kChunk. Chunks are shared and never change once written. So a map can be
-/// queued, merged, sent and retried without a second copy.
-///
-/// A copy of a ChunkedBytes shares its chunks. A ChunkedBytes is not thread-safe, but threads may share
-/// chunks.
+/// Bytes in chunks of at most kChunk, which are shared (also by copies) and never change. So a map can be
+/// queued, merged, sent and retried without a second copy. Threads may share chunks, but not a ChunkedBytes.
 class ChunkedBytes {
  public:
   static constexpr std::size_t kChunk = std::size_t{64} * 1024;

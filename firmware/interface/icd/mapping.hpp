@@ -19,8 +19,7 @@ namespace adit::icd {
 using Stamp = double;
 inline constexpr Stamp kLatestStamp = 0x1.fffffffffffffp31;  // ROS has its seconds in a uint32
 
-/// The frame of every message (ICD 6.1). It was checked when the message was parsed, so a Header does not
-/// contain it.
+/// The frame of every message (ICD 6.1), checked when the message is parsed: a Header does not contain it.
 inline constexpr const char* kFrame = "darpa";
 
 struct Header {
@@ -85,14 +84,12 @@ const FieldSchema& field_of(const PointCloud2& cloud, std::string_view name);
 /// The offsets of x, y and z in a point.
 std::array<std::size_t, 3> axes_of(const PointCloud2& cloud);
 
-/// How MapData's bytes are compressed.
 enum class Compression : std::uint8_t {
   None,
   Gzip,  // exactly one member (RFC 1952) and no bytes after it
 };
 
-/// A map's `data`. `raw_size` is its uncompressed size in bytes: width * height for a grid, a multiple of
-/// point_step for a cloud.
+/// A map's `data`. `raw_size`: bytes when uncompressed: width * height, or a multiple of point_step.
 struct MapData {
   ChunkedBytes bytes;
   Compression compression = Compression::None;

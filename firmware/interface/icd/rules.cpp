@@ -26,7 +26,6 @@ Checked<void> check_place(const FieldSchema& field, std::size_t index, std::uint
                        point_step, ", got ", field.offset, " + ", size, " x ", field.count, " = ", end);
 }
 
-/// The index of the only field with that name.
 Checked<std::size_t> find_unique(const std::vector<FieldSchema>& fields, std::string_view name) {
   const auto count = std::ranges::count(fields, name, &FieldSchema::name);
   if (count == 1) {

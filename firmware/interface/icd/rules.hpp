@@ -40,8 +40,7 @@ Checked<void> check_cells(std::span<const std::uint8_t> cells, std::size_t first
 /// The number of valid cells before the first invalid one.
 std::size_t sound_cells(std::span<const std::uint8_t> cells);
 
-/// ICD 6.3.2, and clouds that crash a server: point_step, the fields' places, x y z present and of one float
-/// type.
+/// ICD 6.3.2, and clouds that crash servers: point_step, fields' places, x y z present and of one float type.
 Checked<void> check(const PointCloud2& cloud, const Rules& rules);
 /// ICD 6.3.2: the data is a whole number of points. Requires check(cloud).
 Checked<void> check_size(const PointCloud2& cloud, std::size_t bytes);

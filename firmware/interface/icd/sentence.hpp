@@ -22,8 +22,7 @@ std::string size_text(std::uint64_t bytes);
 /// A sender's text for a sentence: in quotation marks, on one line, cut after 40 bytes.
 std::string quote_text(std::string_view text);
 
-/// Escapes a text for HTML, also for an attribute in double quotes. A newline or tab becomes a blank, another
-/// control character U+FFFD.
+/// For HTML, also in double quotes. A newline or tab becomes a blank, another control character U+FFFD.
 std::string escape_html(std::string_view text);
 
 inline void append_part(std::string& sentence, std::string_view part) {
@@ -62,14 +61,12 @@ std::unexpected<Refusal> conflict(const Parts&... parts) {
   return std::unexpected(Refusal{Status::Conflict, sentence(parts...)});
 }
 
-/// A refusal with that status and sentence.
 template <class... Parts>
 std::unexpected<Refusal> refuse(Status status, const Parts&... parts) {
   return std::unexpected(Refusal{status, sentence(parts...)});
 }
 
-/// Seconds since 1970 as "2026-11-23 04:05:06" in UTC, without fractions. "" for 0, negative values, values
-/// above 1e11 (the year 5138) and NaN.
+/// Seconds since 1970 as "2026-11-23 04:05:06". "": 0, negative, NaN, or above 1e11 (the year 5138).
 std::string utc(double seconds);
 
 }  // namespace adit::icd

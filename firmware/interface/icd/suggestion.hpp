@@ -7,12 +7,11 @@
 
 namespace adit::icd {
 
-/// The one of `known` that `word` was likely meant to be: a third of its letters differ at most, or `few`, or
-/// one begins with the other.
+/// The likely intended word: at most a third of its letters, or `few`, differ, or one begins with the other.
 std::optional<std::string_view> nearest(std::string_view word, std::span<const std::string_view> known,
                                         std::size_t few = 2);
 
-/// "; did you mean status?", or "" where none of `known` is near.
+/// "; did you mean status?", or "" if no word of `known` is near.
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> known);
 
 /// "; did you mean Cell Phone?" if `type` resembles one of the ICD's ten types, otherwise "". Compares

@@ -19,8 +19,7 @@ constexpr std::string_view trim(std::string_view text, std::string_view space = 
   return text.substr(0, text.find_last_not_of(space) + 1);
 }
 
-/// Removes the text before the next `end`, and the `end`, and returns that text. All of it if there is no
-/// `end`.
+/// Removes and returns the text before the next `end`; removes the `end`. Without an `end`: all of it.
 constexpr std::string_view cut(std::string_view& text, char end) {
   const std::string_view piece = text.substr(0, text.find(end));
   text.remove_prefix(std::min(text.size(), piece.size() + 1));
@@ -39,8 +38,7 @@ std::string join_words(const Items& items, TextOf text_of = {}) {
   return list;
 }
 
-/// The number that all of `text` is, by std::from_chars(); or std::nullopt. `base`: of a whole number, if it
-/// is not 10.
+/// The number that all of `text` is, by std::from_chars(). `base`: of a whole number, if it is not 10.
 template <class Number, class... Base>
 std::optional<Number> number_in(std::string_view text, Base... base) {
   Number number{};

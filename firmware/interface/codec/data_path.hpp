@@ -46,7 +46,7 @@ class DataPath {
     if (depth_ == 1 && type_named_)
       type_ += piece.substr(0, kGrid.size() + 1 - std::min(type_.size(), kGrid.size() + 1));
   }
-  /// Whether the body has declared a grid, perhaps among other types: its end refuses a repeated member.
+  /// Whether the body has declared a grid, perhaps among other types; its end refuses a repeated member.
   bool is_grid() const { return type_ == kGrid; }
 
  private:

@@ -211,7 +211,7 @@ icd::Checked<icd::MapData> read_pressed_cells(const icd::OccupancyGrid& grid, ic
 }
 
 /// ICD 6.3.2: a whole number of points, unchanged, without padding at row ends. Drivers fill `rows` wrongly
-/// (row_step 0, size of all data, number of points): rows count only if padded and of the data's size.
+/// (row_step 0, size of all data, number of points), so rows count only if padded and of the data's size.
 icd::Checked<icd::MapData> read_points(const icd::PointCloud2& cloud, const CloudRows& rows,
                                        icd::ChunkedBytes data, icd::Compression compression,
                                        const icd::Rules& rules) {

@@ -19,7 +19,7 @@ namespace adit::icd {
 using Stamp = double;
 inline constexpr Stamp kLatestStamp = 0x1.fffffffffffffp31;  // ROS has its seconds in a uint32
 
-/// The frame of every message (ICD 6.1), checked when the message is parsed: a Header does not contain it.
+/// The frame of every message (ICD 6.1), checked when the message is parsed, so a Header does not contain it.
 inline constexpr const char* kFrame = "darpa";
 
 struct Header {

@@ -25,15 +25,13 @@ struct Accounts {
   friend bool operator==(const Accounts&, const Accounts&) = default;
 };
 
-/// The part of `hash` before the hash proper. Its salt makes it unique, so it identifies the password without
-/// revealing it.
+/// `hash` without the hash proper. Its unique salt identifies the password without revealing it.
 std::string_view salt_of(std::string_view hash);
 
 /// The role with this password, or nullopt. Takes up to twice as long as matches(), so call it on a worker.
 std::optional<Role> role_of(const std::string& password, const Accounts& accounts);
 
-/// The text of access.json: {"version": 1, "operator": HASH, "viewer": HASH or null}. An error says what is
-/// wrong and contains no hash.
+/// The text of access.json: {"version": 1, "operator": HASH, "viewer": HASH or null}. Errors contain no hash.
 std::expected<Accounts, std::string> read_accounts(std::string_view json);
 std::string write_accounts(const Accounts& accounts);
 
@@ -45,7 +43,6 @@ struct Device {
   icd::BearerToken id;
 };
 
-/// The known devices.
 class Devices {
  public:
   static constexpr std::size_t kMostOfRole = 16;  // beyond it, add() drops the one not seen for longest
@@ -69,21 +66,17 @@ class Devices {
   std::uint64_t last_ = 0;
 };
 
-/// The text of devices.json: {"version": 2, "devices": [{"role", "password", "id"}, ...]}. "password" is
-/// salt_of() the role's hash in `accounts`.
+/// devices.json: {"version": 2, "devices": [{"role", "password", "id"}, ...]}; "password" is its salt_of().
 std::string write_devices(const std::vector<Device>& devices, const Accounts& accounts);
 /// Skips devices that were written under another password than the one in `accounts`. So a device ends with
-/// its password, whichever of the two files was written last. An error says what is wrong and contains no
-/// secret.
+/// its password, whichever of the two files was written last. Errors contain no secret.
 std::expected<std::vector<Device>, std::string> read_devices(std::string_view json, const Accounts& accounts);
 
-/// A time during which a person at the box is trusted. Requests from a network cannot open it. It is kept in
-/// memory only, so a restart closes it.
+/// A time in which a person at the box is trusted. No network request opens it. A restart closes it.
 class Window {
  public:
   /// Opens it for `length` from now, even if it is open already.
   void open(Instant now, Duration length) { until_ = now + length; }
-  /// Closes it after use.
   void close() { until_.reset(); }
   /// The rest of its time, or nullopt if it is closed.
   std::optional<Duration> remaining(Instant now) const {

@@ -56,9 +56,8 @@ icd::Checked<void> check_host_and_origin(const Request& request);
 std::optional<Visitor> find_visitor(const Request& request, std::span<const icd::BearerToken> tokens,
                                     Sessions& sessions, Instant now);
 
-/// Checks that the request may do an action that needs `role`. 401 if it shows no valid token or session. 403
-/// if it comes from another page, if its role is lower, or if it is not GET or HEAD and lacks its session's
-/// CSRF token.
+/// Checks that the request may do an action that needs `role`. 401 without a valid token or session. 403 if
+/// it comes from another page, has a lower role, or is not GET or HEAD and lacks its session's CSRF token.
 icd::Checked<Visitor> admit(const Request& request, Role role, std::span<const icd::BearerToken> tokens,
                             Sessions& sessions, Instant now);
 

@@ -39,7 +39,7 @@ std::vector<std::uint8_t> der_of(std::string_view block) {
 
 }  // namespace
 
-static constexpr std::string_view kWhatWords[] = {"keep", "make", "take"};  // in the order of What
+static constexpr std::string_view kWhatWords[] = {"keep", "make", "take"};  // in the order of Command
 static constexpr auto& words_of(CertificateRequest::Command /*of*/) {
   return kWhatWords;
 }

@@ -8,8 +8,7 @@
 
 #include "codec/row.hpp"
 
-/// The certificate of the page over HTTPS, and the messages, as files, between aditd and adit-certificate,
-/// which makes and checks it: README.md.
+/// The page's certificate, and the messages, as files, between aditd and adit-certificate: README.md.
 namespace adit::access {
 
 /// A private key and its certificates, each as a block of PEM (RFC 7468).

@@ -33,8 +33,7 @@ constexpr std::optional<Role> role_named(std::string_view name) {
   return std::nullopt;
 }
 
-/// Parses a JSON object with this "version" and returns the result of `read`. An error says what is wrong and
-/// contains no secret.
+/// Parses a JSON object with this "version" and returns the result of `read`. Errors contain no secret.
 template <class Kept, class Read>
 std::expected<Kept, std::string> read_kept(std::string_view json, std::int64_t version, Read read) {
   const auto root = codec::parse_json(json);
@@ -48,8 +47,7 @@ std::expected<Kept, std::string> read_kept(std::string_view json, std::int64_t v
   return std::move(*outcome);
 }
 
-/// The results of `read_element` for the elements of an array. Stops at the first refused element and skips
-/// those without a result.
+/// `read_element` of each element; skips those without a result, and stops at the first refused element.
 template <class Element, class Read>
 std::vector<Element> elements_of(const codec::Field& array, Read read_element) {
   std::vector<Element> all;

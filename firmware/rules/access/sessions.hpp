@@ -35,7 +35,6 @@ struct Caller {
   std::string_view agent;  // User-Agent, arbitrary text
 };
 
-/// The sessions that are logged in.
 class Sessions {
  public:
   static constexpr std::chrono::hours kIdle{12}, kLongest{7 * 24};
@@ -46,8 +45,7 @@ class Sessions {
   /// `changed`, if given, is called after each login and when a session is ended; not when one expires.
   explicit Sessions(std::function<void()> changed = {}) : changed_(std::move(changed)) {}
 
-  /// Restores the sessions of an earlier process, except expired ones and those with times after `now`.
-  /// `last`: the last number in use.
+  /// Restores sessions, except expired ones and those with times after `now`. `last`: the last number in use.
   void restore(std::vector<Session> sessions, std::uint64_t last, Instant now);
   std::uint64_t last() const { return last_; }
   const std::vector<Session>& entries() const { return sessions_; }

@@ -47,8 +47,7 @@ struct Action {
   friend bool operator==(const Action&, const Action&) = default;
 };
 
-/// The part of a reason that a hurried person reads: all of it, or up to the last of its marks (": ", "; ",
-/// ", ", " (") within 60 bytes.
+/// The main part of a reason: all of it, or up to the last of its marks (": ", "; ", ", ", " (") in 60 bytes.
 std::string reason_of(const std::string& why);
 
 /// "uav5 is silent", and afterwards "uav5 was silent".
@@ -94,7 +93,6 @@ struct Alarm {
   friend bool operator==(const Alarm&, const Alarm&) = default;
 };
 
-/// An alarm that has ended.
 struct EndedAlarm {
   std::string id = {};
   Severity severity = Severity::Bad;

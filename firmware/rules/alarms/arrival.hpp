@@ -10,8 +10,7 @@ namespace adit::alarms {
 /// Time limits of all faces, in seconds.
 inline constexpr double kLateAfter = 10;       // in addition to one turn of all senders
 inline constexpr double kFailingAfter = 10;    // failing then becomes "not arriving"
-inline constexpr double kStuckAfter = 90;      // any late stream becomes "not arriving", or after three times
-                                               // the late limit
+inline constexpr double kStuckAfter = 90;      // late becomes "not arriving", or after 3 times the late limit
 inline constexpr double kQuietAfter = 60;      // since the last message was accepted, if all are delivered
 inline constexpr double kStatusOldAfter = 15;  // age at which a status of the run is old
 

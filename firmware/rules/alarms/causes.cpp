@@ -42,7 +42,6 @@ bool is_for_the_spare(const Condition& condition) {
          condition.id.starts_with("report_");
 }
 
-/// Whether `other` follows from `cause`.
 bool explains(const Condition& cause, const Condition& other) {
   if (cause.id == "standby") return is_for_the_spare(other);
   if (is_link_loss(cause) && (is_command_post(other) || is(other, "command_post_throttling"))) return true;
@@ -52,8 +51,7 @@ bool explains(const Condition& cause, const Condition& other) {
   return cause.id == "cable_out:team" && is_robots_silence(other);
 }
 
-/// Removes conditions that follow from a larger cause and adds their number to that cause. Order of causes:
-/// the cable, the endpoints, maps and robots.
+/// Hides consequences of larger causes and counts them there. Order: cable, endpoints, maps, robots.
 void hide_consequences(Conditions& found) {
   // Larger causes come first, so a condition is counted at its largest cause.
   for (std::size_t i = 0; i < found.size(); ++i) {

@@ -37,8 +37,7 @@ struct Habit {
   double last = 0;   // time of the last message
 };
 
-/// Usual interval between each robot's messages, and so the silence that matters. A new run does not change
-/// it.
+/// Usual interval between each robot's messages, and so the silence that matters. A new run changes no habit.
 class Habits {
  public:
   struct Rules {
@@ -52,13 +51,11 @@ class Habits {
   /// `count`: the robot's messages of all kinds so far. `now`: monotonic seconds. Call each second; messages
   /// between two calls count as one.
   void on_count(const std::string& robot, std::uint64_t count, double now);
-  /// Restores the habit from before a restart. `count`: messages counted by this process before its first
-  /// on_count().
+  /// Restores an earlier process's habit. `count`: messages counted by this one before its first on_count().
   void restore(const std::string& robot, const Habit& habit, std::uint64_t count);
   /// Makes the robot's silence count from now on. For a robot that sent in this run before a reboot, and has
   /// at most one message since, which may be older than the reboot.
   void expect(const std::string& robot, double now);
-  /// The habit of one robot, or std::nullopt.
   std::optional<Habit> habit_of(const std::string& robot) const;
 
   /// The robots that have a habit and are not switched off.

@@ -68,8 +68,7 @@ void find_silent(const Traffic& traffic, Conditions& found) {
                 .why = "check the team's network and the base station"});
 }
 
-/// The robot's map that is furthest behind, and more than `least` seconds, without the endpoint's own
-/// trouble; or null.
+/// The robot's map furthest behind, by more than `least` s without the endpoint's own trouble; or null.
 const ActivityRow* find_most_delayed(const Traffic& traffic, const std::string& robot, double least) {
   const ActivityRow* longest = nullptr;
   for (const ActivityRow& row : traffic.activities) {

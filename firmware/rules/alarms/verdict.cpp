@@ -71,7 +71,6 @@ std::optional<double> least(std::optional<double> one, std::optional<double> oth
   return one && other ? std::min(one, other) : std::max(one, other);
 }
 
-/// The maps of one robot.
 struct Maps {
   Level level = Level::Quiet;
   bool is_silent = false, is_first = true;     // is_first: none was sent so far, and none is late

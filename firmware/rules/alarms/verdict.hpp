@@ -16,13 +16,11 @@ struct Standing {
 };
 
 /// `row` must be one of `traffic`. Only the largest cause is blamed, as in the list of conditions. While the
-/// mapping endpoint is stopped, queued data is NotArriving at level Quiet, and no robot is silent. While the
-/// team's cable is out, no robot is silent. After the endpoint recovers, queued data is Late until each
-/// sender has had its turn.
+/// mapping endpoint is stopped, queued data is NotArriving at level Quiet. Then, and while the team's cable
+/// is out, no robot is silent. After the endpoint recovers, queued data is Late until each sender's turn.
 Standing standing_of(const facts::ActivityRow& row, const facts::Traffic& traffic);
 
-/// Seconds that the oldest message has been queued while the endpoint accepted messages, at most.
-/// std::nullopt: the queue is empty.
+/// Seconds that the oldest message was queued while the endpoint accepted, at most. std::nullopt: empty.
 std::optional<double> queue_age(const facts::ActivityRow& row, const facts::Traffic& traffic);
 
 /// Computes arrival, levels and words of the rows, the robots' ages, and the standings. `alarms`: the present

@@ -36,9 +36,8 @@ struct Chrony {
 };
 
 /// Configuration for a time of day that `source` set last. If that is the server of `ntp`, chronyd steers the
-/// clock, by at most a minute in one step; otherwise it only measures, because time_to_set() decides. chronyd
-/// serves the clients of `ntp` once the time is reliable (is_set()). It is bound to `interface`. Requires
-/// ntp.is_on().
+/// clock, by at most a minute in one step; else it only measures, because time_to_set() decides. chronyd
+/// serves the clients of `ntp` once the time is_set(), and is bound to `interface`. Requires ntp.is_on().
 Chrony chrony_for(const Ntp& ntp, Source source, const std::string& interface);
 
 }  // namespace adit::clock

@@ -85,8 +85,7 @@ struct Status {
   Ntp ntp = {};                  // in effect
   std::string trouble = "";      // why `ntp` is not in effect, or ""
 
-  /// Source to compare offers with. If the NTP server has changed, its time ranks as the operator's, so that
-  /// the new server's time is accepted.
+  /// To compare offers with. A former NTP server ranks as the operator, so that the new server is accepted.
   Source trusted_source() const {
     return source == Source::Ntp && server != ntp.server ? Source::Operator : source;
   }

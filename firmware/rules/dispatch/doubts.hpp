@@ -63,7 +63,6 @@ class ReportReview {
   void await_undo(std::int64_t number, Time time);
   bool awaits_undo(std::int64_t number) const { return undo_.contains(number); }
   void end_undo(std::int64_t number);
-  /// Reports::sends_at().
   std::optional<double> sends_at(std::int64_t number) const;
   std::optional<Instant> next_undo() const;
   /// Reports whose time is over. Their next time is a second later, in case that a write fails.
@@ -95,13 +94,11 @@ class ReportReview {
 std::string reconciled_answer(const Report& report, const Run& run, std::optional<std::int64_t> points,
                               const std::string& figures);
 
-/// Decides reports in doubt: asks for the run's status until an Inquiry has the result, or the operator
-/// decides.
+/// Decides reports in doubt: asks for the run's status until an Inquiry or the operator decides.
 ///
-/// A doubt whose earlier counts are certain is decided with those that follow it before it is counted: a
-/// group. Any other one is the operator's. A doubt is counted by the first status that is requested
-/// `doubt_for` after its loss, unless the clock stands in a stop. Until then it may explain a change of the
-/// counts.
+/// A doubt whose earlier counts are certain is decided with those that follow before it is counted: a group.
+/// Other doubts are the operator's. A doubt is counted by the first status requested `doubt_for` after its
+/// loss, unless the clock stands in a stop. Until then it may explain a change of the counts.
 class Doubts {
  public:
   using Reports = std::vector<const Report*>;
@@ -112,12 +109,10 @@ class Doubts {
   Doubts(const InquiryPolicy& policy, ReportBook& book, RunAccount& account, const ReportReview& review)
       : policy_(policy), book_(book), account_(account), review_(review) {}
 
-  /// InquiryPolicy::doubt_for
   std::chrono::milliseconds doubt_for() const { return policy_.doubt_for; }
   /// In doubt in the present run, in the order of sending.
   Reports all() const { return book_.doubts(account_.run().number); }
-  /// Call at a start, before begin(). Reports of a box that this one replaces may have come into doubt
-  /// together.
+  /// Call at a start, before begin(). Reports of a replaced box may have come into doubt together.
   void open();
   /// Starts again, for runs() doubts. Call it if one is added or leaves, or if runs were one.
   void begin(Instant now);
@@ -128,8 +123,7 @@ class Doubts {
   }
   /// Report `number` came into doubt.
   void on_lost(std::int64_t number, Instant now);
-  /// A status that was requested at `asked`. Returns the steps that it decides: of all reports of a group, or
-  /// none.
+  /// A status requested at `asked`. Returns the steps that it decides: of all reports of a group, or none.
   std::vector<ReportBook::Step> decide_by_status(const icd::RunStatus& status, Instant asked, Time time);
   /// After the steps of decide_by_status(): the doubts that this status counts.
   void count(Instant asked, Time time);
@@ -142,9 +136,8 @@ class Doubts {
 
   /// Notes the state of the inquiry in `doubts`. `seen`: what the last status showed.
   void explain(const Reports& doubts, const std::string& seen, Time time);
-  /// Call it before the operator's decision about `decided` is written: forgets the expected counts of other
-  /// doubts, which no longer show the result, so that a power cut between leaves no wrong evidence. False:
-  /// the write failed.
+  /// Call before the operator's decision about `decided` is written: forgets other doubts' expected counts,
+  /// which no longer show the result, so that a power cut leaves no wrong evidence. False: the write failed.
   bool blur(std::int64_t decided, Time time);
   /// After the operator's decision.
   void ask_for_others(Time time);

@@ -49,8 +49,7 @@ bool has_effect(const Report& report) {
 /// The runs of a takeover: the first box's (`there`) with their numbers at the spare (`here`).
 class MergedRuns {
  public:
-  /// `same`: of the reports of `here` and `there`. `ahead`: Handover::ahead, seconds. `here` and `same` must
-  /// outlive this object.
+  /// `same`: reports of both. `ahead`: Handover::ahead, seconds. `here` and `same` must outlive this object.
   MergedRuns(const Books& here, const Books& there, const SameReports& same, double ahead);
 
   /// The first box's runs by their numbers here, merged with those that the spare knew.

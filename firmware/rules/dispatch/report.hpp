@@ -80,7 +80,6 @@ const ReportTransition* transition(ReportState state, ReportEvent event);
 /// True if Adit does no more with a report in this state.
 bool is_final(ReportState state);
 
-/// nullopt for an unknown word.
 std::optional<ReportState> state_named(std::string_view name);
 
 using Instant = std::chrono::steady_clock::time_point;
@@ -90,8 +89,7 @@ struct Time {
   double stamp = 0;  // seconds since 1970
 };
 
-/// A step of the stamp clock at a boot. The clock may step by more than the time for which the machine was
-/// off.
+/// A step of the stamp clock at a boot. It may exceed the time for which the machine was off.
 struct ClockStep {
   double to = 0;  // stamps from here on are later by `by`; seconds since 1970
   double by = 0;  // seconds
@@ -121,8 +119,7 @@ struct Report {
   double sent = 0;           // last sending; seconds since 1970
   /// The status expected just before it was sent. nullopt: uncertain.
   std::optional<icd::RunStatus> before = std::nullopt;
-  /// Earlier reports in doubt that may explain a change of the counts since `before`, one report and up to
-  /// one point each.
+  /// Earlier doubts that may explain a change of counts since `before`: one report, up to one point each.
   std::int64_t beside = 0;
   bool counted = false;  // in doubt: later statuses have its effect, so that it explains no later change
   std::string uncertain = "";  // if in doubt: why the counts do not show what became of it; "": not known

@@ -9,8 +9,7 @@
 namespace adit::dispatch {
 namespace {
 
-/// The Command Post or the network has acted, so a failed write cannot undo it. After a restart the ledger
-/// has the state already.
+/// The Command Post or the network acted, so a failed write cannot undo it. A restart has the state already.
 bool is_irreversible(ReportEvent event) {
   using enum ReportEvent;
   constexpr ReportEvent kHappened[] = {Recorded,   Rejected,  Throttled, Barred,

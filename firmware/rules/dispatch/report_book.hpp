@@ -41,17 +41,15 @@ class ReportBook {
   /// Takes all reports and the unwritten steps.
   void adopt(const ReportBook& before);
 
-  /// Of the next report.
   std::int64_t next_number() const { return reports_.empty() ? 1 : reports_.rbegin()->first + 1; }
   /// Adds a queued report and applies `events`, in one write, after the steps `before`. `edit` runs after
   /// each event. Returns the number; 0: the write failed, and no report was added or changed.
   std::int64_t add(Report report, std::span<const ReportEvent> events, const std::string& note,
                    const Edit& edit = nullptr, std::span<const Report> before = {});
 
-  /// Applies steps of different reports in one write, and follows their actions. False: no step was applied,
-  /// because the table lacks one or the write failed. If a step is an act of the Command Post or the network,
-  /// all are applied even if the write fails, and are written later. The ledger then has "sending", which a
-  /// restart reads as in doubt.
+  /// Applies steps of different reports in one write and follows their actions. False: no step was applied:
+  /// the table lacks one or the write failed. With an act of the Command Post or the network, all are applied
+  /// even if the write fails, and written later. Until then the ledger has "sending": a restart is in doubt.
   bool move(std::span<const Step> steps, Time time);
   bool move(const Step& step, Time time) { return move({&step, 1}, time); }
   /// Changes reports but not their states, in one write. False: the write failed, no report changed.

@@ -22,8 +22,7 @@ void Reports::doubt_in_flight(Time time) {
   }
 }
 
-/// The report is certainly meant for the present run. If no status comes, a young one or one sent on purpose
-/// may go.
+/// Certainly meant for the present run. Without a status, a young report or one sent on purpose may go.
 bool Reports::can_send(const Report& report, Instant now) const {
   if (barred_ || (is_page_ && !ordered_.contains(report.number))) return false;
   if (doubts_.is_pending(now)) return false;
@@ -149,8 +148,7 @@ ReportEvent Reports::on_answered(const HttpAnswer& answer, Time time) {
   return event;
 }
 
-/// The other sent report in `reply`, or null. Servers and proxies may repeat an answer, which is no evidence
-/// here.
+/// The other sent report in `reply`, or null. Servers and proxies may repeat an answer: no evidence here.
 const Report* Reports::find_other_report(const icd::ReportReply& reply) const {
   if (!reply.report || is_same(*reply.report, book_.sending()->report)) return nullptr;
   for (const Report* const other : book_.find_same(*reply.report)) {

@@ -43,8 +43,7 @@ struct PostedReport {
   bool can_be_undone = false;
 };
 
-/// The rules of all reports (promise 1), without I/O or clock. Output writes each step to disk before the
-/// step has effects.
+/// The rules of all reports (promise 1), without I/O or clock. Output writes each step before its effects.
 ///
 /// At most one request is in flight. After choose() returns a report, or accept() true, call exactly one of
 /// on_answered(), on_never_sent() and on_lost() before the next request. After a request for the status, call
@@ -56,8 +55,7 @@ class Reports {
   /// `output` outlives this.
   Reports(const ReportRules& rules, Output& output);
 
-  /// Starts from the ledger. If `post` is another Command Post than before, its last run or a new one becomes
-  /// the present run.
+  /// Starts from the ledger. If `post` is another one than before, its last run or a new one becomes present.
   void open(std::vector<Report> all, std::vector<Run> runs, Time time, const std::string& post = "");
   /// Starts from `before`, which has no report in flight: with its steps that the ledger lacks, because the
   /// disk failed, and with its clients and their deadlines.
@@ -77,8 +75,7 @@ class Reports {
   bool accept(const PostedReport& posted, ClientId client, bool may_send, Time time);
 
   NextRequests next_requests(Time time) const;
-  /// The first queued report that may be sent, on disk as sending(). Null: no such report, or the write
-  /// failed.
+  /// The first queued report that may be sent, on disk as sending(). Null: none, or the write failed.
   const Report* choose(Time time);
   ReportEvent on_answered(const HttpAnswer& answer, Time time);
   void on_never_sent(const std::string& why, Time time) { on_ended(ReportEvent::NeverLeft, why, time); }
@@ -106,7 +103,6 @@ class Reports {
   /// Returns the new run's number.
   std::int64_t declare_new_run(Time time) { return changes_.declare(time); }
 
-  /// The report that a client waits for. nullopt: the client does not wait.
   std::optional<std::int64_t> awaited_report(ClientId client) const {
     return clients_.awaited_report(client);
   }
@@ -124,8 +120,7 @@ class Reports {
   std::vector<const Report*> lost_reports() const { return review_.lost_reports(); }
   /// The status expected now. nullopt: uncertain, or the counts prove no report.
   std::optional<icd::RunStatus> expected_status(Instant now) const { return account_.expected_status(now); }
-  /// When a held report is sent unless the operator withdraws it, in seconds since 1970. nullopt: the
-  /// operator decides, or it is not held.
+  /// When a held report is sent, in seconds since 1970. nullopt: the operator decides, or it is not held.
   std::optional<double> sends_at(const Report& report) const { return review_.sends_at(report.number); }
   /// True if the report is in doubt and Adit still asks about it.
   bool is_asking(const Report& report) const { return doubts_.is_asking(report); }
@@ -162,8 +157,7 @@ class Reports {
   std::set<std::int64_t> ordered_;  // the operator sends them, even to a server whose status is a web page
 };
 
-/// A sentence about the unfinished reports, with their counts, for the case that the settings name the
-/// Command Post at `post`.
+/// A sentence with the counts of unfinished reports, for settings that name the Command Post at `post`.
 std::string describe_command_post_change(const Reports& reports, const std::string& post);
 
 }  // namespace adit::dispatch

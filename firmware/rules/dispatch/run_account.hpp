@@ -42,8 +42,7 @@ Evidence weigh(const icd::RunStatus& before, std::int64_t doubts, std::int64_t b
                const LaterReports& since, const icd::RunStatus& now);
 
 struct InquiryPolicy {
-  /// From the loss to a request whose status may say "not recorded". The Command Post may record a report so
-  /// late.
+  /// From the loss to a request whose status may say "not recorded", because recording may be that late.
   std::chrono::milliseconds doubt_for{10000};
   std::int64_t asks = 3;  // successive statuses that must say "not recorded"
 };
@@ -101,7 +100,6 @@ class RunAccount {
   /// answered later may belong to the next run.
   double status_at() const { return status_at_; }
   const Runs& runs() const { return runs_; }
-  /// Runs::expected_run().
   const Run& expected_run() const { return runs_.expected_run(); }
   /// True for reports of expected_run(), and for the one in flight, which a later run may record.
   bool is_of_run(const Report& report) const;
@@ -137,9 +135,8 @@ class RunAccount {
   /// be if there are signs, or 0.
   void begin(const AnotherRun& another, std::int64_t may_be, const std::optional<icd::RunStatus>& status,
              std::span<const Report> steps, Time time);
-  /// Runs::set_next_run().
   void set_next_run(std::int64_t number) { runs_.set_next_run(number); }
-  /// The same for a new run at `post`, which it writes so that a restart finds it. Returns its number.
+  /// Announces a new run at `post`, and writes it so that a restart finds it. Returns its number.
   std::int64_t announce(const std::string& why, const std::string& post, Time time);
   void adopt(std::int64_t number, std::span<const Report> steps, Time time);
   /// The present run and the runs between are the same run as `number`. `number` becomes the present run, and
@@ -164,8 +161,7 @@ class RunAccount {
   /// Compares a status with the expected one, and starts from it. Call it only while each doubt that the
   /// counts may decide is counted. `open`: other doubts, each of which may explain a report and a point.
   void settle(const icd::RunStatus& status, std::int64_t open, Time time);
-  /// True if the clock was seen to run and the last status does not show that it runs: perhaps a stop, in
-  /// which the counts show no report.
+  /// The clock was seen to run, but not by the last status: perhaps a stop, in which counts show no report.
   bool is_stopped() const { return is_stopped_; }
   /// The counts prove no report until the next run.
   void distrust(const std::string& why, double stamp);

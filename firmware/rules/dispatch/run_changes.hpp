@@ -32,8 +32,7 @@ class WaitingClients {
   void answer_client(ClientId client, const Report& report);
   /// Answers and removes the clients of a report.
   void answer_all(std::int64_t number);
-  /// `number` repeats `earlier`: its clients wait for `earlier` with their deadlines, or are told if it is
-  /// final.
+  /// `number` repeats `earlier`: its clients wait for that, with their deadlines, or get an answer if final.
   void hand_over(std::int64_t number, const Report& earlier);
   /// Answers and removes clients whose time is up.
   void tick(Instant now);
@@ -41,7 +40,6 @@ class WaitingClients {
   void dismiss(bool all);
   bool is_stopping() const { return stopping_; }
 
-  /// The report that a client waits for. nullopt: the client does not wait.
   std::optional<std::int64_t> awaited_report(ClientId client) const;
   std::optional<Instant> next_deadline() const;
 

@@ -9,8 +9,7 @@
 namespace adit::dispatch {
 namespace {
 
-/// The sign of a clock, as a sentence. "": none. `is_alone`: without another sign, the clock must have been
-/// seen to run.
+/// The sign of a clock, as a sentence, or "". `is_alone`: without another sign, the clock must have run.
 std::string clock_sign(const std::optional<Clock>& clock, double shows, double silence, bool is_alone) {
   if (!clock || (!clock->runs && is_alone)) return "";
   const double before = clock->shows;

@@ -42,8 +42,7 @@ struct Signs {
   friend bool operator==(const Signs&, const Signs&) = default;
 };
 
-/// A run of the Command Post. Its address, team and name identify it. If these are equal, a status may show a
-/// difference.
+/// A run of the Command Post. Its address, team and name identify it, or a difference that a status shows.
 struct Run {
   /// In `unreliable`: no sign of another sender.
   static constexpr const char* kCountsStand =
@@ -96,19 +95,16 @@ std::optional<AnotherRun> another_run(const Run& run, const icd::RunStatus& stat
 /// The same by an answer's `run` (ICD 5.2), or if that is missing, by its clock.
 std::optional<AnotherRun> another_run(const Run& run, const icd::ReportReply& reply, const Silence& silence);
 
-/// True if the clock of the statuses advanced as time passed, to a value that no run can show that began
-/// since the last status.
+/// True if the statuses' clock advanced as time passed, beyond any run that began since the last status.
 bool has_continued(const Run& run, const icd::RunStatus& status, const Silence& silence);
 
 /// True if the status shows more reports left in a run that certainly goes on: somebody granted them.
 bool is_grant(const Run& run, const icd::RunStatus& status, const Silence& silence);
 
-/// A run that began up to `ago` seconds ago may show this clock. A clock that goes back to a later value was
-/// set by a referee.
+/// A run that began up to `ago` s ago may show this clock. If a clock goes back to more, a referee set it.
 bool can_be_new(double shows, double ago);
 
-/// What the first status after another name shows of that name. `before`: the earlier run, with a last
-/// status.
+/// What the first status after another name shows of it. `before`: the earlier run, which has a status.
 enum class NameCheck : std::uint8_t {
   Confirmed,     // a sign of another run agrees, or a run that began since may show this status
   Contradicted,  // the counts and the clock of `before` go on
@@ -148,7 +144,6 @@ class Runs {
 
   /// Of the fitting runs the one that was present last, except the present one; or null.
   const Run* latest(const std::function<bool(const Run&)>& fits) const;
-  /// latest() at `post`.
   const Run* latest_at(const std::string& post) const;
   std::int64_t next_number() const { return runs_.rbegin()->first + 1; }
   /// Gives it a number and a turn.

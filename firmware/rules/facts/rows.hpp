@@ -148,8 +148,7 @@ struct EndpointRow {
   Time since = 0;                       // start of the fault
   double waits = 0;                     // seconds since a request made any progress; 0: none is waiting
   std::string said = {};                // detail of the fault from the connection or the Command Post
-  std::optional<double> well_for = {};  // seconds since the endpoint accepts again; nullopt: it has not been
-                                        // stopped
+  std::optional<double> well_for = {};  // seconds since it accepts again; nullopt: it was never stopped
 
   static const codec::Row kRow;
 };

@@ -43,7 +43,6 @@ struct Crowd {
   std::string address = {};  // of most of these clients
 };
 
-/// The team's clients.
 struct Clients {
   std::vector<std::string> unknown_robots = {};
   std::vector<Crowd> crowds = {};
@@ -61,7 +60,6 @@ struct Reports {
   std::vector<RejectedRow> rejected = {};
 };
 
-/// An address conflict.
 struct AddressConflict {
   bool is_team = false;
   std::string interface = {}, address = {};
@@ -96,7 +94,6 @@ struct Update {
   std::string stray = {};    // why an unexpected slot runs, with its name, or ""
 };
 
-/// The box itself.
 struct Box {
   std::string ledger_refusal = {}, ledger_damage = {};
   std::string other_ledger = {};  // file of a ledger of another format, or ""

@@ -99,8 +99,7 @@ namespace {
 using settings::Subnet;
 
 /// The address stays without a carrier (ConfigureWithoutCarrier), so a pulled cable costs only its own time.
-/// Other addresses of the interface are removed (KeepConfiguration=no), or a replaced address would stay
-/// beside the new one.
+/// Other addresses of the interface go (KeepConfiguration=no), or a replaced one would stay beside the new.
 constexpr const char* kHead =
     "# Written by adit-network: to change it, use Adit's page.\n"
     "[Match]\n"
@@ -113,9 +112,8 @@ constexpr const char* kBoth =
     "KeepConfiguration=no\n"
     "ConfigureWithoutCarrier=yes\n";
 
-/// adit-network looks for address conflicts (RFC 5227) before it writes this file. The check by networkd
-/// would leave the interface without an address for seconds. If the address changes during the check, version
-/// 252 sets both.
+/// adit-network looks for address conflicts (RFC 5227) before it writes this file. networkd's check would
+/// leave the interface without an address for seconds; version 252 sets both if the address changes then.
 std::string address(const Subnet& host, bool with_route) {
   return icd::sentence("\n[Address]\nAddress=", host_text(host), with_route ? "" : "\nAddPrefixRoute=no",
                        "\nDuplicateAddressDetection=none\n");
@@ -163,8 +161,7 @@ std::string team_file(const std::string& interface, const Numbers& numbers) {
                      "MulticastDNS=yes\n" +
                      kBoth;
   text += asks ? "DHCP=ipv4\n" : "DHCP=no\n";
-  // Addresses from the DHCP server of another network are useless here. A cable that moved within one network
-  // keeps its lease.
+  // Addresses from another network's DHCP are useless here. A cable moved within a network keeps its lease.
   text += asks ? "IgnoreCarrierLoss=5s\n" : "IgnoreCarrierLoss=yes\n";
   if (numbers.mode == Mode::Static) text += address(numbers.team, true);
   if (asks) {

@@ -30,8 +30,7 @@ class NumbersSetter {
 /// confirms it. If the operator does not confirm it in time, it is reverted.
 class Change {
  public:
-  /// Attempts of a failing revert, and the wait between two of them. After the last one, a later start
-  /// reverts.
+  /// Attempts of a failing revert, and the wait between them. After the last one, a later start reverts.
   static constexpr int kTries = 5;
   static constexpr std::chrono::seconds kTryAgain{2};
 
@@ -47,8 +46,7 @@ class Change {
   void on_interrupted();
 
   void request_change(const ChangeRequest& wanted, Instant now);
-  /// Confirms or reverts the pending change. Call before tick(): a late caller may hold a word that came in
-  /// time.
+  /// Confirms or reverts the change. Call before tick(): a late caller may hold a word that came in time.
   void decide(const Decision& word, Instant now);
   /// Forgets all addresses and ends a pending change. Error: not done, or not in effect yet.
   std::expected<void, std::string> forget(Instant now);

@@ -8,8 +8,7 @@
 
 namespace adit::network {
 
-/// One value that changes: "team.address", "192.168.7.11", "192.168.8.11". The addresses of the Command
-/// Post's side are one value.
+/// One changed value: "team.address", "192.168.7.11", "192.168.8.11". The Command Post's addresses are one.
 struct Difference {
   std::string path, from, to;
 };

@@ -11,8 +11,7 @@
 #include "codec/row.hpp"
 #include "network/numbers.hpp"
 
-/// Messages, as files, between aditd, which has no privileges, and adit-network, which has them:
-/// README.md.
+/// Messages, as files, between aditd, which has no privileges, and adit-network, which has: README.md.
 namespace adit::network {
 
 /// CLOCK_MONOTONIC, which both programs share.
@@ -50,8 +49,7 @@ struct Decision {
   static const codec::Row kRow;
 };
 
-/// Asks whether another machine has one of the box's addresses on the Command Post's network, and on which
-/// interface a machine answers for `sought`.
+/// Asks for address conflicts on the Command Post's network, and on which interface `sought` answers.
 struct Probe {
   std::string nonce;
   std::string sought = "";  // the endpoint's IPv4 address, or its gateway's; "": not asked
@@ -66,7 +64,6 @@ struct Endpoints {
 };
 inline constexpr std::size_t kMostEndpoints = 64;
 
-/// Requests the factory addresses.
 struct FactoryRequest {
   std::string nonce;
   static const codec::Row kRow;
@@ -98,7 +95,7 @@ struct Pending {
 };
 
 enum class ChangeOutcome : std::uint8_t { NotYet, Confirmed, Reverted };
-inline constexpr std::string_view kEndedWords[] = {"", "confirmed", "reverted"};  // in the order of Ended
+inline constexpr std::string_view kEndedWords[] = {"", "confirmed", "reverted"};  // by ChangeOutcome
 constexpr auto& words_of(ChangeOutcome /*of*/) {
   return kEndedWords;
 }

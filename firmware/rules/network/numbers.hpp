@@ -42,8 +42,7 @@ inline constexpr std::uint8_t kWidest = 8, kNarrowest = 30;  // prefixes with ro
 /// Reads `{"team": {"mode", "address", "prefix"}, "command_post": {"addresses": [{"address", "prefix"}, ...],
 /// "gateway"}}`. The error lists all faults by path: missing, unknown or repeated members, wrong types,
 /// addresses that a host cannot have, repeated addresses. `mode` defaults to static; the other modes have no
-/// address. `gateway` may be absent, null or "". One address may replace `addresses`: `{"address", "prefix",
-/// "gateway"}`.
+/// address. `gateway` may be absent, null or "". `{"address", "prefix", "gateway"}` may replace `addresses`.
 std::expected<Numbers, std::vector<settings::Error>> read_numbers(const codec::Value& value);
 
 /// A host's address with its prefix, in the stored form.
@@ -64,8 +63,7 @@ struct AddressOrNone {
 
 /// The Command Post address of the box whose subnet contains `address`, or null.
 const settings::Subnet* on_link(const Numbers& numbers, std::uint32_t address);
-/// The host to send to for an address of the Command Post: `address` itself or the gateway. std::nullopt: no
-/// route.
+/// The host to send to for a Command Post's address: itself or the gateway. std::nullopt: no route.
 std::optional<std::uint32_t> next_hop(const Numbers& numbers, std::uint32_t address);
 
 /// "192.168.7.11/24", "dhcp", "link-local"

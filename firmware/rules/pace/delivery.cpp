@@ -30,8 +30,7 @@ constexpr int kStands = 4;
 /// A shorter interval gives no reliable rate.
 constexpr std::chrono::milliseconds kTelling{20};
 
-/// Bytes. If Adit writes all the time and TCP has no more bytes to send, the socket's buffer is full of bytes
-/// in flight, which are far more.
+/// Bytes. If TCP has no more to send although Adit writes all the time, far more are in flight.
 constexpr std::size_t kFew = 64u << 10;
 
 /// TCP has too little to send, so the link may carry more.

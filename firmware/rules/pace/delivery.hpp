@@ -8,9 +8,8 @@
 
 namespace adit::pace {
 
-/// The bytes of TCP payload per second that maps may use on a link of `megabit` Mbit/s (> 0): 11.5 MB/s at
-/// 100 Mbit/s. Full frames on that link carry 11.77 MB/s. The frames then stay within the link, and a report
-/// does not queue behind a map.
+/// TCP payload in bytes per second that maps may use on a link of `megabit` Mbit/s (> 0): 11.5 MB/s at 100,
+/// where full frames carry 11.77. The frames then stay within the link, so no report queues behind a map.
 std::uint64_t map_bytes_per_second(double megabit);
 
 /// The state of a TCP connection at one time (TCP_INFO).
@@ -22,9 +21,8 @@ struct Progress {
   Duration round_trip{}, least_round_trip{};  // now; without a queue
 };
 
-/// Measures how fast the link delivers one connection's bytes, and sets the pace at which to write them.
-/// Bytes that are written faster queue before the slow part of the link, and a report would queue behind
-/// them. All rates are in bytes per second.
+/// Measures how fast the link delivers a connection's bytes, and sets the pace of writing, as bytes that are
+/// written faster queue before the slow part of the link, and a report behind them. Rates: bytes per second.
 ///
 /// Works like BBR (draft-ietf-ccwg-bbr) with longer intervals. The delivery rate while a queue exists is the
 /// rate of the link. While a queue exists, the pace is half of that rate. From time to time a probe adds a
@@ -48,9 +46,8 @@ class Delivery {
 
   /// The pace at which to write.
   double pace() const;
-  /// The highest delivery rate of an interval in this second and the previous one. An interval in which TCP
-  /// had too little to send counts only if it was faster than the link's known rate. `most` if no rate is
-  /// known.
+  /// The highest delivery rate of an interval in this second and the previous one. If TCP had too little to
+  /// send, an interval counts only if faster than the link's known rate. `most` if no rate is known.
   double delivery_rate() const;
 
  private:

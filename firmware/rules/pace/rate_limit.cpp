@@ -167,8 +167,7 @@ bool RateLimit::is_a_limit() const {
 
 void RateLimit::slow_down(Instant now) {
   const Duration slowest = std::max(allowed_, spacing_at(kSlowest));
-  // The pause that worked last, or the average time per accepted request including the storm, shows the
-  // server's rate.
+  // The pause that worked last, or the average per accepted request with the storm, shows the server's rate.
   const Duration as_seen = taken_since_ == 0 ? last_storm_->worked
                            : soon_again_ > 1 ? last_storm_->on_average
                                              : Duration{0};

@@ -69,13 +69,11 @@ class RateLimit {
   Span earliest() const;
   /// The earliest time for a request that leaves at once as a whole.
   Instant next() const;
-  /// Between two requests, as allowed or learned. A request that leaves within this time does not delay the
-  /// next.
+  /// As allowed or learned. A request that leaves within this time does not delay the next.
   Duration spacing() const;
   bool ready(Instant now) const { return now >= next(); }
 
-  /// True if the next request may be sent before the last one is answered. False in a storm and while a
-  /// learned rate applies.
+  /// True if the next request may be sent before the last answer. False in a storm and at a learned rate.
   bool can_pipeline() const { return !storm_ && !rule_.from_answers && rule_.spacing == allowed_; }
 
   /// `ahead`: the previous request is still in flight. One call of on_answered(), on_not_sent(), on_lost() or
@@ -97,17 +95,14 @@ class RateLimit {
   /// Returns the time at which it may leave; the spacing to the next request counts from there. Returns
   /// nullopt and reserves no turn if that time is after `latest`.
   std::optional<Instant> claim(Instant now, Instant latest);
-  /// Call this when the claimed request leaves, which may be later than claimed, and when it ends. Its answer
-  /// does not change the rate.
+  /// Call when the claimed request leaves, perhaps late, and when it ends. Its answer changes no rate.
   void on_claimed(Instant now);
 
-  /// Sets the allowed rate; it also applies to the time since the last request. A learned rate and a pause
-  /// that the server asked for stay.
+  /// Sets the allowed rate, also since the last request. A learned rate and a pause by a server stay.
   void allow(double hertz, Instant now);
 
   LearnedRate learned_rate() const;
-  /// Restores the previous process's state; this one starts at `now`. A request in flight may have just
-  /// ended.
+  /// Restores the previous process's state at `now`. A request in flight may have just ended.
   void restore(const LearnedRate& learned, Instant now);
 
  private:

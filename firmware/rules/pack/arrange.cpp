@@ -223,9 +223,8 @@ struct Shift {
   icd::Point origin;
 };
 
-/// Moves one coordinate of `placed` so that `low` to `high` lie in the binade. False if the binade is too
-/// narrow or float32 too coarse in "darpa". `origin` is a float32, so a receiver rounds only once, when it
-/// adds the two.
+/// Moves one coordinate of `placed` so that `low` to `high` lie in the binade. False if it is too narrow or
+/// float32 too coarse in "darpa". `origin` is a float32, so a receiver rounds only once, adding the two.
 bool shift(double binade, double unit, double low, double high, double& placed, double& origin) {
   constexpr double kMargin = 4;  // units; the origin is rounded by at most one
   if (!(std::max(std::abs(low), std::abs(high)) < binade)) return false;

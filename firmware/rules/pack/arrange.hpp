@@ -10,8 +10,7 @@
 
 namespace adit::pack {
 
-/// The order of points: by one coordinate first. gzip makes them smaller, because neighbours then have
-/// similar bytes.
+/// The order of points, by one coordinate first. Neighbours then have similar bytes, which gzip makes small.
 enum class Layers : std::uint8_t {
   AlongX,  // by x, then z, then y
   AlongY,  // by y, then x, then z
@@ -27,8 +26,7 @@ inline constexpr std::size_t kMostOrdered = std::size_t{1} << 19;
 std::vector<std::uint32_t> numbers_in(Layers layers, const icd::PointCloud2& cloud, const Box& box,
                                       std::span<const std::uint8_t> points);
 
-/// libdeflate's level for points. Level 6 takes a quarter longer and saves up to 2 %. The output of level 4
-/// is up to a third larger.
+/// libdeflate's level for points. 6 takes a quarter longer and saves up to 2 %; 4 is up to a third larger.
 inline constexpr int kPointsLevel = 5;
 
 /// A cloud whose points are uncompressed and in one piece.
@@ -41,7 +39,6 @@ struct ContiguousCloud {
 ContiguousCloud arrange_contiguous(const PointLayout& layout, const icd::MapData& data,
                                    std::size_t point_step);
 
-/// The box of all its points.
 Box box_of(const ContiguousCloud& arranged);
 
 /// Puts the points in the order in which gzip makes them smallest: in layers along one of the axes, or as
@@ -57,12 +54,10 @@ void put_in_order(ContiguousCloud& arranged);
 ///
 /// Each point stays within 1.3 units of its place in "darpa", even if the receiver computes in float32. If
 /// that is not possible, it returns false and changes nothing:
-/// - the points extend over more than the binade, or lie that far from the origin of "darpa" (8192 m for
-///   2^-10 m)
+/// - the points extend over more than the binade, or lie that far from "darpa"'s origin (8192 m for 2^-10 m)
 /// - the cloud is turned and has fields that may contain a direction
 /// - the cloud is big-endian, because a server may object to an origin then
 /// - two fields share bytes, or there are no points
-///
 /// All points are finite (remove_invalid_points()).
 bool round_to(double unit, ContiguousCloud& arranged);
 

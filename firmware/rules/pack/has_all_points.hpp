@@ -6,8 +6,7 @@
 
 namespace adit::pack {
 
-/// Clouds with this many points or more are compared from the beginning only. The limit bounds the memory for
-/// others to 32 MiB.
+/// Clouds of so many points are compared from the beginning only, which bounds others' memory to 32 MiB.
 inline constexpr std::size_t kMostComparedPoints = std::size_t{1} << 20;
 
 /// True if `newer` has each point of `older`, with equal bytes: at its beginning in the same order, as in a

@@ -134,8 +134,7 @@ void pack_points(icd::PointCloud2& cloud, icd::MapData& data, const CloudForm& f
   data.bytes = member ? *std::move(member) : icd::ChunkedBytes{arranged.points};
 }
 
-/// Checks that a point's x, y and z are finite, by their exponents only (IEEE 754). It needs no alignment and
-/// no byte swapping.
+/// Checks that x, y and z are finite by their exponents (IEEE 754), without alignment or byte swapping.
 class FiniteCheck {
  public:
   explicit FiniteCheck(const icd::PointCloud2& cloud) {

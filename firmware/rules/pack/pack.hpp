@@ -22,13 +22,11 @@ struct EffortInput {
   double longest = 1;           // seconds from one map to the next
 };
 
-/// The time of each effort per byte, and the size of Full's output relative to Quick's. Measured on exact
-/// clouds by tests/bench/sizes.
+/// Seconds per byte of each effort, and Full's size relative to Quick's: tests/bench/sizes, exact clouds.
 inline constexpr double kSecondsPerByte[] = {0, 7e-9, 15e-9};
 inline constexpr double kFullOfQuick = 0.85;
 
-/// A map with more bytes of points or cells is not packed (Effort::None), because packing holds it up to
-/// twice in memory beside its file.
+/// Larger maps are not packed (Effort::None), as packing holds one up to twice in memory beside its file.
 inline constexpr std::size_t kMostPacked = std::size_t{40} << 20;
 
 /// libdeflate's levels for cells. The next higher level takes 9 MiB of memory; a lower one is hardly faster.

@@ -63,8 +63,7 @@ struct Box {
   static Coordinates all(double metres) { return {metres, metres, metres}; }
 };
 
-/// Calls `visit` with each point of `bytes` (point_step bytes), in order, across chunk borders, until it
-/// returns false.
+/// Calls `visit` with each point (point_step bytes), in order, across chunk borders, until it returns false.
 template <class Visit>
 void for_each_point(const icd::ChunkedBytes& bytes, std::size_t point_step, Visit visit) {
   std::vector<std::uint8_t> cut;  // the first bytes of a point that continues in the next chunk
@@ -114,9 +113,8 @@ struct PointLayout {
 /// The layout of `cloud`; each point is copied whole.
 PointLayout plain_layout(const icd::PointCloud2& cloud);
 
-/// The layout without the padding between and after the fields. Offsets and point_step change. The fields
-/// keep their bytes, their places in the list, and their order in a point. nullopt if two fields share a
-/// byte. Requires check(cloud).
+/// The layout without the padding between and after the fields. The fields keep their bytes, their places in
+/// the list and their order. nullopt if two fields share a byte. Requires check(cloud).
 std::optional<PointLayout> strip_padding(const icd::PointCloud2& cloud);
 
 }  // namespace adit::pack

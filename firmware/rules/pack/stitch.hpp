@@ -18,9 +18,8 @@ struct Tile {
 };
 
 /// Puts `tiles`, which lie within it, into a grid of width x height. A later tile overwrites an earlier one,
-/// even with unknown cells. The other cells come from `under`, which has as many cells; if it is empty, they
-/// are unknown. An error says what is wrong with a tile's data. The time grows with the cells, so call it on
-/// a worker.
+/// even with unknown cells. Other cells come from `under`, of as many cells; if it is empty, they are
+/// unknown. Errors are about a tile's data. The time grows with the cells, so call it on a worker.
 icd::Checked<icd::MapData> stitch(std::size_t width, std::size_t height, std::span<const Tile> tiles,
                                   std::vector<std::uint8_t> under = {});
 

@@ -69,8 +69,7 @@ class AlignedGrid {
   struct Cells {
     std::uint32_t begin = 0, end = 0;
   };
-  /// The cells that each pixel shows, along x or along y. Two pixels show the same cells or have no cell in
-  /// common.
+  /// The cells that each pixel shows, along x or y. Two pixels show the same cells, or none in common.
   struct Axis {
     /// The pixels of the frame along this axis.
     struct Pixels {
@@ -104,7 +103,6 @@ class TurnedGrid {
  public:
   TurnedGrid(const icd::OccupancyGrid& grid, const icd::Placement& placement, Sheet& sheet);
 
-  /// Draws a part of a row. Call it in the order of the data.
   void draw(std::size_t row, std::size_t column, std::span<const std::uint8_t> cells);
   std::size_t left_out() const { return left_out_; }
 
@@ -397,8 +395,7 @@ Area area_of(const Sheet::Part& part) {
           (x + static_cast<double>(right)) * kPixel, (y - top) * kPixel};
 }
 
-/// Leaves out a hundredth of the pixels at either end, because they may be errors and would compress the
-/// colours of the others.
+/// Leaves out a hundredth of the pixels at either end, as errors would compress the colours of the others.
 std::optional<Heights> heights_of(const Sheet& sheet) {
   std::array<std::size_t, 256> count{};
   for (const auto& part : sheet.parts()) {
@@ -422,8 +419,7 @@ std::optional<Heights> heights_of(const Sheet& sheet) {
                  rounded(height_of(beyond(known - 1 - few)) + kHeightStep / 2)};
 }
 
-/// Lays a map's sheet over `before`, at all levels. Fills in the drawing's tiles, area and heights. Its layer
-/// must be set.
+/// Lays a map's sheet over `before`, at all levels. Fills in tiles, area and heights. Requires the layer.
 void lay(const Sheet& sheet, const Canvas& before, Drawing& drawing) {
   const bool is_grid = drawing.layer.kind == LayerKind::Grid;
   Layers layers{before, drawing};
@@ -487,8 +483,7 @@ icd::Checked<Drawing> draw(const icd::MapUpdate& map, const Canvas& before, cons
 
 namespace {
 
-/// Cuts a cloud's data into points, piece by piece. Calls `visit(bytes)` with the first of every `stride`
-/// points.
+/// Cuts a cloud's data into points, piece by piece. Calls `visit(bytes)` with each `stride`th point.
 class PointCutter {
  public:
   PointCutter(std::size_t point_step, std::size_t stride) : step_(point_step), stride_(stride) {}

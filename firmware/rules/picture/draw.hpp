@@ -120,8 +120,7 @@ icd::Checked<Drawing> draw(const icd::MapUpdate& map, const Canvas& before, cons
 inline constexpr std::size_t kMostPoints = std::size_t{4} << 20;
 /// Cells in a row.
 inline constexpr std::size_t kMostColumns = std::size_t{1} << 20;
-/// Pixels that a turned grid sets, or that have no tile in another grid. Then the longest side of a turned
-/// grid's cells, in pixels.
+/// Pixels that a turned grid sets, or without a tile in another; longest side of a turned cell, in pixels.
 inline constexpr std::size_t kMostDabs = std::size_t{32} << 20;
 inline constexpr double kLargestTurnedCell = 64;
 

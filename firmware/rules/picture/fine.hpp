@@ -23,7 +23,6 @@ inline std::size_t place_in_block(const TileIndex& at) {
 /// Draws `grids` over each other, in their order, at the level below `over.level`. `under` is the tile at
 /// `over` (null: blank). Its pixel is shown if nothing finer is known there. So the picture never shows less
 /// than the coarse one, even after grids have been dropped.
-///
 /// The time grows with the grids, so call it on a worker. A damaged grid is drawn as far as it can be read.
 FineBlock draw_fine(
     const TileIndex& over, std::span<const std::shared_ptr<const ForwardedGrid>> grids, const Tile& under,

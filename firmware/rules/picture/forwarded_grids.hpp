@@ -44,13 +44,11 @@ class ForwardedGrids {
   bool add(std::shared_ptr<const ForwardedGrid> grid, std::uint64_t number);
   void clear();
 
-  /// The grids that touch `area`, oldest first: the last ones, with at most kMostCells together. The newest
-  /// is always included.
+  /// The last grids that touch `area`, oldest first, with at most kMostCells together, but always one.
   std::vector<std::shared_ptr<const ForwardedGrid>> grids_in(const Layer& layer, const Area& area) const;
   /// The number of the newest grid that touches `area`; 0: no grid.
   std::uint64_t newest_in(const Layer& layer, const Area& area) const;
-  /// The finest level of a layer, and the area that changed after `since`. nullopt if it has no level finer
-  /// than the mosaic's.
+  /// A layer's finest level, and the area that changed after `since`. nullopt: not finer than the mosaic.
   std::optional<FinerLevels> finer_levels(const Layer& layer, std::uint64_t since) const;
   std::size_t bytes() const { return bytes_; }
 

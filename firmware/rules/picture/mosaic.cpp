@@ -279,8 +279,7 @@ void Mosaic::restore(Mosaic earlier, double stamp) {
   keep_to_budget();
 }
 
-/// The history of a tile that exists here is not extended: a wiped tile has states of another run, and no
-/// state can be inserted before them.
+/// A tile that exists here keeps its history, as a wiped tile has states of another run, which cannot follow.
 void Mosaic::restore(State& state, const TileIndex& at, const History& earlier, double stamp) {
   const auto found = state.tiles.find(at);
   if (found != state.tiles.end()) {

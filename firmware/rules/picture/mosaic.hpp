@@ -23,11 +23,9 @@ struct Version {
 /// Approximate memory of a version.
 std::size_t cost_of(const Version& version);
 
-/// One tile over time.
-///
-/// Time is divided into spans of `spacing` seconds. Only the last version of each span is kept, so the
-/// version shown for any time is at most `spacing` old. A span of twice the length covers two of these, so
-/// repeated thinning gives the same result as the final spacing from the start.
+/// One tile over time. Time is divided into spans of `spacing` seconds. Only the last version of each span is
+/// kept, so the version shown for any time is at most `spacing` old. A span of twice the length covers two of
+/// these, so repeated thinning gives the same result as the final spacing from the start.
 class History {
  public:
   /// Requires a stamp that is not before the newest.
@@ -55,7 +53,6 @@ class History {
   std::size_t cost_ = 0;
 };
 
-/// One tile of a layer.
 struct TileView {
   TileIndex at;
   double first = 0;           // time of its first drawing
@@ -84,12 +81,10 @@ struct LayerView {
   std::optional<FinerLevels> finer;  // from ForwardedGrids
 };
 
-/// The picture of all maps: the layers, their tiles, and earlier states of the tiles. It stores tiles; draw()
-/// makes them.
+/// The picture of all maps: layers, tiles, and earlier states of tiles. It stores tiles; draw() makes them.
 ///
 /// Keeps at most `budget` bytes. Beyond that, older states of tiles are thinned out evenly over time, down to
-/// the newest state only. A drawing is rejected as a whole if its newest tiles do not fit. Times are seconds
-/// since 1970.
+/// the newest. A drawing is rejected as a whole if its newest tiles do not fit. Times: seconds since 1970.
 class Mosaic {
  public:
   static constexpr std::size_t kBudget = std::size_t{32} << 20;
@@ -97,13 +92,11 @@ class Mosaic {
 
   explicit Mosaic(std::size_t budget = kBudget) : budget_(budget) {}
 
-  /// The canvas for the next map of that layer. Make and apply a layer's drawings one after the other, each
-  /// on a new canvas.
+  /// For the next map of that layer. Make and apply a layer's drawings one by one, each on a new canvas.
   Canvas canvas(const Layer& layer) const;
 
-  /// Adds the drawing of a map that came at `stamp`. A stamp before the last one counts as the last one.
-  /// False if there is no room for the drawing or its layer (it counts as missed), or if the drawing was
-  /// begun before the last wipe.
+  /// Adds the drawing of a map that came at `stamp`, or at the last one if later. False if there is no room
+  /// for it or its layer (it counts as missed), or if it was begun before the last wipe.
   bool apply(Drawing drawing, double stamp);
   /// A map of that layer came and will not be drawn.
   void on_missed(const Layer& layer, double stamp);
@@ -118,8 +111,7 @@ class Mosaic {
   /// Shifts all times: the time of day was set ahead by `seconds`.
   void move(double seconds);
 
-  /// Restores a state of a tile from before a restart. Call it in the order of the tile's states. False if
-  /// the order is violated or there is no room.
+  /// Restores a tile's state from before a restart. Call in their order. False: wrong order, or no room.
   bool restore(const Layer& layer, const TileIndex& at, Tile tile, double stamp);
   /// Restores the data of a layer, except its tiles.
   void restore(const LayerView& view);
@@ -137,8 +129,7 @@ class Mosaic {
   };
   ShownTile tile(const Layer& layer, const TileIndex& at, std::optional<double> stamp) const;
 
-  /// Tiles of grids in the base, by place and robot. Only places with a tile that changed after version
-  /// `since`. Valid until the next change.
+  /// Grids' base tiles by place and robot, of places that changed after `since`. Valid until the next change.
   std::map<TileIndex, std::vector<std::pair<std::string, const History*>>> grid_places(
       std::uint64_t since) const;
   /// False if a grid of this run, or a part of a robot's last one, is not in the picture.

@@ -14,11 +14,10 @@ struct Colour {
   friend bool operator==(const Colour&, const Colour&) = default;
 };
 
-/// A tile's pixels are indices of colours. 0 is transparent and means unknown.
-///
-/// A grid's cell of `value` per cent has index value + 1. Free (0) is #c8d2da, occupied (100) is #a8321e, and
-/// values between are shades between. Free ways are light and walls dark red, so lightness alone tells them
-/// apart, and both stand out from a dark and a light background.
+/// A tile's pixels are indices of colours. 0 is transparent and means unknown. A grid's cell of `value` per
+/// cent has index value + 1. Free (0) is #c8d2da, occupied (100) is #a8321e, and values between are shades
+/// between. Free ways are light and walls dark red, so lightness alone tells them apart, and both stand out
+/// from a dark and a light background.
 inline constexpr std::uint8_t kMostOccupiedIndex = 101;
 std::span<const Colour> grid_palette();
 /// The same with other colours, because a page has its own in each theme.
@@ -31,10 +30,9 @@ std::uint8_t height_index(double z);
 /// The middle of the heights with this index.
 double height_of(std::uint8_t index);
 
-/// Colours for heights from `low` to `high`; heights beyond have the colours of the ends. They go from dark
-/// violet over green to yellow, after "viridis" (Smith and van der Walt, CC0). Its lightness grows steadily,
-/// so the colours can be told apart by the colour-blind and in grey. Its darkest shades are left out, because
-/// they would be lost on a dark page.
+/// Colours for heights from `low` to `high`; heights beyond have the colours of the ends. Dark violet over
+/// green to yellow, after "viridis" (Smith and van der Walt, CC0): its lightness grows steadily, for the
+/// colour-blind and in grey. Its darkest shades, which would be lost on a dark page, are left out.
 std::span<const Colour> height_ramp();  // evenly spaced, lowest first; colours between are mixed
 std::array<Colour, 256> cloud_palette(double low = kLowest, double high = kHighest);
 /// The same from one colour to another, for example of a robot or a theme.

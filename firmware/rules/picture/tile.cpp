@@ -25,8 +25,7 @@ std::uint32_t crc_of(const std::vector<std::uint8_t>& deflated) {
 
 struct Packer::Streams {
   Streams() {
-    // Only runs of one index are looked for: a third of the time of level 4, and no more bytes for tiles of
-    // maps.
+    // Only runs of one index: a third of level 4's time, and no more bytes for tiles of maps.
     require(deflateInit2(&out, Z_DEFAULT_COMPRESSION, Z_DEFLATED, MAX_WBITS, kMemory, Z_RLE) == Z_OK);
     require(inflateInit(&in) == Z_OK);
   }

@@ -31,8 +31,7 @@ inline constexpr double metres_per_pixel(int level) {
                    : kMetresPerPixel[static_cast<std::size_t>(level)];
 }
 
-/// The drawn world reaches this far from the frame's origin along x and y: in metres, pixels and tiles of the
-/// base.
+/// The drawn world's reach from the frame's origin along x and y: in metres, pixels and tiles of the base.
 inline constexpr double kWorldMetres = 8192;
 inline constexpr int kWorldPixels = 32768;
 inline constexpr int kWorldTiles = kWorldPixels / kSide;
@@ -107,8 +106,7 @@ inline constexpr std::size_t index_of(int x, int y) {
   return static_cast<std::size_t>(kSide - 1 - y) * kSide + static_cast<std::size_t>(x);
 }
 
-/// A tile as stored: the content of a PNG's IDAT chunk (a zlib stream of unfiltered rows), without the
-/// palette, which all tiles share.
+/// A tile as stored: a PNG's IDAT chunk (a zlib stream of unfiltered rows) without the shared palette.
 struct PackedTile {
   std::vector<std::uint8_t> deflated;
   std::uint32_t crc = 0;  // of the chunk, by PNG 5.5; equal tiles have equal values

@@ -22,7 +22,6 @@ struct Trial {
 };
 
 /// Decides whether a message of one URI fails by its own fault, or because the Command Post fails for all.
-///
 /// - If all messages fail, there is an outage, and all of them stay queued.
 /// - If a message fails repeatedly while others are accepted, the message is at fault. After each such
 ///   failure (a strike) one other message goes first, and the message rests twice as long as before, up to

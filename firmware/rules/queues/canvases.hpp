@@ -41,8 +41,7 @@ class Canvas {
   Ground ground_at(const Cells& cells) const;
   /// Marks cells that are being sent as unknown, until lay(). Requires at most kMostTouched tiles.
   void forget(const Cells& cells);
-  /// Sets the cells that were drawn over ground_at(). `when`: the number of this lay(), a count. Tiles that
-  /// were forgotten since then stay unknown.
+  /// Sets cells drawn over ground_at(). `when`: the number of this lay(). Tiles forgotten since stay unknown.
   void lay(const Ground& drawn, std::uint64_t when) noexcept;
 
   std::size_t tiles() const { return tiles_.size(); }
@@ -66,12 +65,10 @@ class Canvas {
 
 /// The cells that were last sent of each robot's grids. MapQueue stitches grids into one rectangle and fills
 /// the gaps with these cells: each has the newest value that was packed, or was never sent to the present map
-/// of the Command Post. A gap is not filled if its cells are unknown. Cells become unknown because of the
-/// memory's limit, a failed try, a restart, another Command Post, or a run that may still be the previous
-/// one.
-///
-/// A map that failed is retried before newer maps and is drawn again, so that a filled gap is never older
-/// than the cells that arrived.
+/// of the Command Post. A gap with unknown cells is not filled. Cells become unknown by the memory's limit, a
+/// failed try, a restart, another Command Post, or a run that may still be the previous one. A map that
+/// failed is retried before newer maps and drawn again, so a filled gap is never older than cells that
+/// arrived.
 class Canvases {
  public:
   static constexpr std::size_t kMostTiles = 4096;       // with known cells: 16 MiB
@@ -88,8 +85,7 @@ class Canvases {
   void lead_to(std::string command_post);
   /// Sets what earlier processes may have sent.
   void restore(PostedAreas before);
-  /// The extent to be recorded before `grid` is accepted, so that a later process knows it; nothing if it is
-  /// recorded already.
+  /// The extent to record before `grid` is accepted, for later processes; nothing if it is recorded.
   std::optional<std::pair<std::string, Extent>> grows(const icd::MapUpdate& grid) const;
   void on_grown(const std::pair<std::string, Extent>& posted) {
     posted_.insert_or_assign(posted.first, posted.second);
@@ -105,7 +101,6 @@ class Canvases {
   /// An earlier run goes on: its map may have any cell that was posted.
   void resume_run();
 
-  /// The canvas of the grids of that name, or null if there is none.
   const Canvas* find(const std::optional<icd::RobotName>& name) const;
 
   /// Call before `next` is packed: sets its `ground` if the grid is to be drawn. If this throws, fewer cells

@@ -28,8 +28,7 @@ inline constexpr std::string_view kPrecisionWords[] = {"exact", "1mm", "8mm", "a
 using PointsAt = std::array<std::size_t, 3>;
 inline constexpr PointsAt kAnyPoints{SIZE_MAX, SIZE_MAX, SIZE_MAX};
 
-/// The finest precision at which `waiting` bytes of points fit into one message, or the coarsest if none
-/// fits.
+/// The finest precision at which `waiting` bytes of points fit into one message, or else the coarsest.
 constexpr Precision precision_for(std::size_t waiting, const PointsAt& holds) {
   if (waiting <= holds[0]) return Precision::Exact;
   return waiting <= holds[1] ? Precision::Millimetre : Precision::EightMillimetres;

@@ -27,7 +27,6 @@ struct Extent {
   friend bool operator==(const Extent&, const Extent&) = default;
 };
 
-/// The smallest rectangle that holds both.
 inline Extent bounding_box(const Extent& a, const Extent& b) {
   return {std::min(a.left, b.left), std::min(a.bottom, b.bottom), std::max(a.right, b.right),
           std::max(a.top, b.top)};
@@ -53,25 +52,21 @@ struct Cells {
   friend bool operator==(const Cells&, const Cells&) = default;
 };
 
-/// The smallest rectangle that holds both.
 inline Cells bounding_box(const Cells& a, const Cells& b) {
   const std::int64_t x = std::min(a.x, b.x), y = std::min(a.y, b.y);
   return {x, y, std::max(a.right(), b.right()) - x, std::max(a.top(), b.top()) - y};
 }
 
-/// The intersection of two rectangles that overlap.
 inline Cells common(const Cells& a, const Cells& b) {
   const std::int64_t x = std::max(a.x, b.x), y = std::max(a.y, b.y);
   return {x, y, std::min(a.right(), b.right()) - x, std::min(a.top(), b.top()) - y};
 }
 
-/// The cells of `grid`, counted from the lower left cell of `of`, or nothing if they have different lattices.
-/// One lattice: the same resolution, orientation and height, and origins that are a whole number of cells
-/// apart, to a thousandth of a cell.
+/// The cells of `grid`, counted from the lower left cell of `of`; nothing if their lattices differ. One
+/// lattice: equal resolution, orientation and height, and origins a whole number of cells apart (to 1/1000).
 std::optional<Cells> cells_in(const icd::OccupancyGrid& of, const icd::OccupancyGrid& grid);
 
-/// The pose of the lower left corner of the cell (x, y), counted from the lower left cell of `of`. Nothing if
-/// it is too far for cells_in() to count.
+/// The pose of the lower left corner of cell (x, y) of `of`'s lattice. Nothing: too far for cells_in().
 std::optional<icd::Pose> corner_at(const icd::OccupancyGrid& of, std::int64_t x, std::int64_t y);
 
 /// A square of a canvas with the values that were last packed for it.
@@ -82,8 +77,7 @@ struct CanvasTile {
   bool is_known = false;                            // all cells are known
 };
 
-/// The cells of a canvas in a rectangle. Shares the tiles, which are immutable, so that a worker can read
-/// them.
+/// A canvas's cells in a rectangle. Shares the tiles, which never change, so that a worker can read them.
 struct Ground {
   std::uint64_t canvas = 0;     // number of the canvas
   Cells cells;                  // the rectangle, on the canvas's lattice
@@ -93,13 +87,11 @@ struct Ground {
 
 /// The tiles that `cells` touches, in units of tiles.
 Cells tiles_of(const Cells& cells);
-/// The cells of the tile (x, y).
 inline Cells cells_of_tile(std::int64_t x, std::int64_t y) {
   return {x * CanvasTile::kSide, y * CanvasTile::kSide, CanvasTile::kSide, CanvasTile::kSide};
 }
 
-/// The cells of `ground`, row by row. Cells that were never sent, or whose sent value is unknown, are ROS's
-/// unknown.
+/// The cells of `ground`, row by row. Never sent or unknown cells are ROS's unknown.
 std::vector<std::uint8_t> cells_under(const Ground& ground);
 
 /// Draws a map's cells over a Ground.

@@ -149,8 +149,7 @@ std::vector<std::size_t> SenderQueue::followers_of(std::size_t place) const {
   return places;
 }
 
-/// A map that failed, or that goes alone, may be sent after newer ones. While one is queued, the canvas is
-/// not used for the others.
+/// A map that failed or goes alone may be sent after newer ones. Meanwhile, the others do not use the canvas.
 void SenderQueue::stitch_followers(QueuedMap& next, std::size_t place, const Canvas* canvas,
                                    std::vector<bool>& leaves) const {
   const auto grid_at = [this](std::size_t i) { return &std::get<icd::OccupancyGrid>(waiting_[i].map.msg); };

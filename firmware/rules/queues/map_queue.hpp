@@ -21,14 +21,11 @@ namespace adit::queues {
 
 /// Decides whether the next map may be sent before the Command Post has answered the previous one, so that
 /// the link is not idle meanwhile. At most two maps are in flight, and the first one has arrived.
-///
 /// A map goes ahead if all of this holds:
 /// - The order of the two does not matter, even if the first one fails and is retried after the second one:
 ///   they are maps of different senders, or clouds of one sender that are parts.
-/// - The Command Post has accepted the last kWell maps, and its answer is not late by kLate. Otherwise more
-///   maps would not help it.
+/// - The Command Post accepted the last kWell maps, and is not late by kLate. Else more maps would not help.
 /// - The previous map has never failed.
-///
 /// After each failure with two maps in flight, twice as many maps have to be accepted in a row. A Command
 /// Post that cannot handle two maps therefore mostly gets one at a time.
 class Pipelining {
@@ -72,8 +69,7 @@ class Turns {
   /// The most that one message costs, in slots.
   static constexpr std::uint64_t kMostSlots = 64;
 
-  /// The turn of a sender whose queue was empty, behind all others. `last`: its last result of serve() or
-  /// charge().
+  /// The turn of a sender whose queue was empty, behind all. `last`: its last result of serve() or charge().
   Turn join(Turn last) { return {std::max(last.round, round_ + 1), ++places_}; }
   /// Serves `turn`, and returns the sender's next turn.
   Turn serve(Turn turn) {
@@ -156,7 +152,6 @@ class SenderQueue {
 };
 
 /// The queued maps.
-///
 /// Turns: a sender is a robot's maps of one kind. If N senders have queued maps, each is served within N
 /// messages (Turns). Each try is a turn, whatever its outcome.
 ///
@@ -174,13 +169,11 @@ class SenderQueue {
 /// - A map with PackingRule::Last is taken only if all others rest or are gone.
 ///
 /// Result for the grids of one name and lattice: a Command Post that overwrites cells ends with the newest
-/// posted value in each cell, unknown included. A Command Post that overlays (unknown overwrites nothing)
-/// ends with the newest value wherever that value is known. If lattices differ, a grid that was replaced may
-/// lack half a cell at its edge.
+/// posted value in each cell, unknown included. One that overlays (unknown overwrites nothing) ends with the
+/// newest value wherever it is known. If lattices differ, a replaced grid may lack half a cell at its edge.
 ///
 /// A map on trial (Blame) lets others go first while it rests. A grid on trial holds back later grids of its
-/// name for its first kInPlace failures, including failures of grids that it replaced. After that they go
-/// ahead of it.
+/// name for its first kInPlace failures, including those of grids that it replaced. Then they go ahead.
 class MapQueue {
  public:
   /// `merge_bytes`: the most bytes of points that pop() merges into one message.
@@ -239,8 +232,7 @@ class MapQueue {
     for (auto& [sender, waiting] : senders_) waiting.queue.restart_pieces();
   }
 
-  /// Two successive clouds that have not been compared yet, or nothing. Call replace() or keep_both() with
-  /// the outcome.
+  /// Two successive clouds not compared yet, or nothing. Call replace() or keep_both() with the outcome.
   std::optional<CloudPair> uncompared_clouds() const;
   /// The newer cloud has all points of the older one and replaces it, if both are still queued unchanged.
   /// Returns the numbers of the updates whose maps are no longer needed.

@@ -290,8 +290,7 @@ void MarkerQueue::requeue_last(const QueuedMarkers& markers) {
   if (markers.updates > 0) {
     updates_.add(last, markers.updates, markers.accepted);
   } else if (!is_needless && !updates_.empty()) {
-    // The change becomes the end of its update, which is the first one. Otherwise its update would be done
-    // when the other changes are gone.
+    // The change now ends its update, the first one; else that would be done when the others are gone.
     updates_.move_first_to(last);
   }
 }

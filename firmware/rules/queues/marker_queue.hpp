@@ -18,10 +18,9 @@
 namespace adit::queues {
 
 /// Queued changes of the marker scene (ICD 6.6) in sending order, without needless ones. A newer change of
-/// the same ns and id replaces an older one. DeleteAll replaces all earlier changes. A Delete behind a
-/// DeleteAll is dropped. Law: on any scene, these changes have the same result as all changes that were
-/// applied. Each change has a place, a number that rises in sending order. Only the first change can be a
-/// DeleteAll.
+/// the same ns and id replaces an older one. DeleteAll replaces all earlier changes; a Delete behind it is
+/// dropped. Law: on any scene, these changes have the same result as all that were applied. Each change has a
+/// place, which rises in sending order. Only the first change can be a DeleteAll.
 class MarkerChanges {
  public:
   using Place = std::int64_t;
@@ -34,11 +33,9 @@ class MarkerChanges {
     friend bool operator==(const Size&, const Size&) = default;
   };
 
-  /// Adds a change behind all others. Returns the place of the change that now stands for it, or of the
-  /// DeleteAll that made it needless.
+  /// Adds a change behind all others. Returns the place of the change, or DeleteAll, that stands for it.
   Place apply(icd::Marker marker);
-  /// The same for a DeleteAll. Returns the changes that became needless, because freeing many of them takes
-  /// long.
+  /// The same for a DeleteAll. Returns the needless changes, because freeing many of them takes long.
   MarkerChanges wipe(icd::Marker delete_all);
   /// The same as if `older` had been applied first. Returns a place behind the changes of `older` and before
   /// all others. The cost grows with `older`, not with the queue.
@@ -58,8 +55,7 @@ class MarkerChanges {
     return begins_with_delete_all() ||
            (earlier.action != icd::MarkerAction::DeleteAll && places_.contains(earlier));
   }
-  /// Whether apply() would add no change: a change of the same ns and id is queued, or `marker` is a
-  /// DeleteAll.
+  /// Whether apply() would add no change: one of that ns and id is queued, or `marker` is a DeleteAll.
   bool holds(const icd::Marker& marker) const {
     return marker.action == icd::MarkerAction::DeleteAll || places_.contains(marker);
   }
@@ -113,8 +109,7 @@ class QueuedUpdates {
   void move_first_to(Place last);
   /// Removes the updates that end before the first of `changes`, and returns their number.
   std::uint64_t remove_done(const MarkerChanges& changes);
-  /// If the last change of an update is gone, the update ends at the change before it. This bounds the number
-  /// of ends by that of changes.
+  /// If an update's last change is gone, it ends at the change before. This bounds the number of ends.
   void join(const MarkerChanges& changes);
 
   bool empty() const { return by_end_.empty(); }
@@ -171,13 +166,11 @@ class MarkerQueue {
   /// the newest change of each. Changes before the last DeleteAll are left out.
   icd::MarkersUpdate queued_changes(const icd::MarkersUpdate& update) const;
   void add(icd::MarkersUpdate update, Instant now);
-  /// Adds a part of a large update, because all of it at once would block the loop. Moves from `some`.
-  /// `last`: the result of the previous part, or kNowhere. Call end_of_update() after the last part, and no
-  /// pop() before.
+  /// Adds a part of a large update, because all of it would block the loop. Moves from `some`. `last`: the
+  /// previous part's result, or kNowhere. Call end_of_update() after the last part, and no pop() before.
   MarkerChanges::Place add_part(std::span<icd::Marker> some, MarkerChanges::Place last);
   void end_of_update(MarkerChanges::Place last, Instant now);
-  /// The changes that a DeleteAll made needless since the last call. Freeing them takes long; any thread may
-  /// do it.
+  /// The changes made needless by DeleteAll since the last call. Freeing takes long; any thread may do it.
   std::vector<MarkerChanges> needless() { return std::exchange(needless_, {}); }
   /// Takes the oldest changes out, in order; nullopt if the queue is empty. A lifetime is reduced to the rest
   /// that remains at `now`, at least kLeastLifetime. An expired marker becomes a Delete, because an older one
@@ -186,14 +179,12 @@ class MarkerQueue {
   /// Queues the result of the last pop() again, which was not delivered: ahead of newer changes, and merged
   /// with them. The cost grows with `markers`, not with the queue.
   void put_back(const QueuedMarkers& markers);
-  /// The same, and halves the number of markers in a message, so that the marker that the Command Post
-  /// rejects is found.
+  /// The same, and halves the number in a message, so that the rejected marker is found.
   void put_back_narrower(const QueuedMarkers& markers);
   /// Queues a single failed change behind all others, unless they make it needless. A DeleteAll stays first,
   /// because later changes depend on it. Instead, pop() gives a copy of one later change once, in turn, to
   /// find out whether others are accepted. The result at the Command Post is the same.
   void requeue_last(const QueuedMarkers& markers);
-  /// Whether a queued change makes an earlier change of that marker needless.
   bool supersedes(const icd::Marker& earlier) const { return changes_.supersedes(earlier); }
   /// The last message was accepted: the next one may have twice as many markers.
   void on_passed() { most_now_ = std::min(bounds_.per_message, most_now_ * 2); }

@@ -128,8 +128,7 @@ bool replaces(const QueuedMap& newer, const QueuedMap& older) {
   return is_newer(newer, older) && contains_all_of(newer, older);
 }
 
-/// A clock that was set back gives many maps the same stamp. They are sent again oldest first, so the later
-/// one is newer.
+/// A clock set back gives many maps one stamp. They are sent again oldest first, so the later one is newer.
 bool is_newer(const QueuedMap& waiting, const QueuedMap& back) {
   if (!waiting.again) return true;
   return back.again &&
@@ -150,8 +149,7 @@ void join(QueuedMap& to, const QueuedMap& from) {
   to.accepted = std::min(to.accepted, from.accepted);
 }
 
-/// A single part may not contain the maps that the whole replaced since it was merged, so their updates go
-/// with the last part.
+/// A single part may not contain the maps that the whole replaced, so their updates go with the last part.
 std::vector<QueuedMap> parts_of(QueuedMap map, bool may_join_again) {
   icd::require(!map.parts.empty());
   std::vector<std::uint64_t> of_parts, others;

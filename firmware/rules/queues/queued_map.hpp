@@ -30,8 +30,7 @@ bool mergeable(const icd::PointCloud2& a, const icd::PointCloud2& b);
 /// The same of two maps. False for grids and for packed points.
 bool can_merge(const icd::MapUpdate& a, const icd::MapUpdate& b);
 
-/// One update with older's points, then newer's, and newer's header. Shares their bytes. Requires mergeable
-/// clouds of one name with uncompressed data.
+/// older's points, then newer's, with newer's header. Shares their bytes. Requires can_merge() and one name.
 icd::MapUpdate merge(icd::MapUpdate older, const icd::MapUpdate& newer);
 
 /// A large message got no answer, or 400 with a page, so often in a row. `at`: the bytes of it that had left
@@ -63,8 +62,7 @@ enum class PackingRule : std::uint8_t {
   LastAsItIs,  // the same, and sent as it arrived
 };
 
-/// A queued map and the accepted updates that it stands for: its own, those it replaced, those merged into
-/// it.
+/// A queued map and the accepted updates that it stands for: its own, replaced and merged ones.
 struct QueuedMap {
   icd::MapUpdate map;
   Instant accepted;                    // when the oldest of `updates` was accepted
@@ -146,16 +144,14 @@ std::span<const MapTransition> map_life();
 /// Requires that the event can happen in that state.
 const MapTransition& transition(MapState state, MapEvent event);
 
-/// The maps that are delivered if `taken` is accepted: the map itself, or the parts of a map with gaps,
-/// because a gap has no news.
+/// The maps delivered if `taken` is accepted: itself, or the parts of a map with gaps, which have no news.
 std::vector<const icd::MapUpdate*> delivered_maps(const QueuedMap& taken);
 /// The bounds of a grid and of all that it replaced.
 icd::GridBounds bounds_of(const QueuedMap& grid);
 /// Whether `newer`, which was just accepted, contains all of `older` and of what that replaced: it is a grid
 /// that covers it (icd::covers()), has a part that covers it (if it has gaps), or is a whole cloud.
 bool contains_all_of(const QueuedMap& newer, const QueuedMap& older);
-/// The same for a retry: `newer` is queued or in flight, and must be newer than `older`, which was not
-/// delivered.
+/// The same for a retry: `newer`, queued or in flight, must be newer than `older`, which was not delivered.
 bool replaces(const QueuedMap& newer, const QueuedMap& older);
 
 /// Whether `waiting` is newer than `back`, which was not delivered.

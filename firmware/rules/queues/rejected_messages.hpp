@@ -35,14 +35,12 @@ struct RejectedMessage {
 /// stamp: a message that the operator sends again may be older than other rejected messages.
 bool replaces(const Message& newer, const RejectedMessage& older);
 
-/// The rejected messages, kept for the operator to look at and to send again. Holds the newest: at most
-/// kMostItems and kMostBytes, but always one.
+/// Rejected messages, kept for the operator. The newest: at most kMostItems and kMostBytes, but always one.
 class RejectedMessages {
  public:
   static constexpr std::size_t kMostItems = 100, kMostBytes = std::size_t{64} << 20;
 
-  /// Adds `item` under the next number. Returns the numbers of the messages that were dropped for it: those
-  /// that it contains, then the oldest.
+  /// Adds `item` under the next number. Returns the numbers dropped for it: those in it, then the oldest.
   std::vector<std::uint64_t> add(RejectedMessage item);
   /// Adds a message of an earlier process under its own number.
   void restore(RejectedMessage item);

@@ -44,8 +44,7 @@ class OvertakenMaps {
   /// A map is being stored; until end().
   void begin(const Upload& upload, bool is_overtaken) { stored_.push_back({upload, is_overtaken}); }
   void end(const Upload& upload);
-  /// `map`, which has a stamp, was accepted. Of a grid that was overtaken, call it for each part that is
-  /// queued: the others have no newer cells.
+  /// `map`, with a stamp, was accepted. Of an overtaken grid, call it for each queued part: others are older.
   void record(const icd::MapUpdate& map, const Upload& upload);
   bool empty() const { return stored_.empty(); }
 
@@ -74,9 +73,8 @@ class OvertakenMarkers {
  public:
   static constexpr std::size_t kMostBytes = 1u << 20;  // as in icd::bytes_of(); beyond it, none are kept
 
-  /// Removes the changes that newer changes of the same ns and id, or a newer DeleteAll, overtook. Behind a
-  /// DeleteAll that newer changes overtook, it adds those that no other client has replaced. Returns the
-  /// number of removed changes.
+  /// Removes changes that newer ones of the same ns and id, or a newer DeleteAll, overtook; returns their
+  /// number. Behind an overtaken DeleteAll, adds those that no other client has replaced.
   std::size_t remove_from(icd::MarkersUpdate& update, const Upload& upload) const;
   /// `update`, which has stamps, was accepted.
   void record(const icd::MarkersUpdate& update, const Upload& upload);
@@ -121,7 +119,6 @@ struct SenderClock {
 };
 
 /// Converts each sender's time stamps to the gateway's clock and keeps their spacing (ICD 6.2, promise 5).
-///
 /// - A sender's first stamp becomes now. Its offset is kept from then on: two messages that it stamped 0.3 s
 ///   apart stay 0.3 s apart, however late they arrive.
 /// - If a sender's clock steps, its offset is set again: the stamp becomes now, or the sender's latest
@@ -136,7 +133,6 @@ struct SenderClock {
 /// - A message without a stamp gets its stamp in the same way.
 /// - An address has at most kMostOfAddress clocks; further robots share one clock for each URI. Beyond
 ///   kMostAddresses, the address that was silent longest is dropped.
-///
 /// The cost of a stamp does not depend on the number of clocks.
 class StampShift {
  public:

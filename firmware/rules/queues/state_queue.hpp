@@ -36,11 +36,9 @@ struct QueuedState {
 };
 
 /// The robots' newest poses (ICD 6.5). Each robot may post alone. A sent state has the poses of all robots of
-/// the run, also of those without news.
-///
-/// If the Command Post does not accept a state of several robots, each robot goes apart, in a message of its
-/// own, until its pose is accepted once. So only the robot at fault fails. It rests between its tries
-/// (queues::Blame), and after each of them the others go first.
+/// the run, also of those without news. If the Command Post does not accept a state of several robots, each
+/// robot goes apart, in a message of its own, until its pose is accepted once. So only the robot at fault
+/// fails. It rests between its tries (queues::Blame), and after each of them the others go first.
 class StateQueue {
  public:
   /// How long a robot rests after its own state was given up.
@@ -69,11 +67,9 @@ class StateQueue {
   /// The newest poses of all robots that go together, or of one robot that goes apart. Nothing if there is no
   /// news, or only of robots that rest. Without `now`, no robot rests.
   std::optional<QueuedState> pop(Instant now = Instant::max());
-  /// Drops robots without news, because another Command Post knows no robot. Call while no state is in
-  /// flight.
+  /// Drops robots without news, as another Command Post knows no robot. Call while no state is in flight.
   void forget_accepted();
-  /// Another run has begun. Queued poses are sent once, because they were posted before it; accepted poses
-  /// are not sent again.
+  /// Another run has begun. Poses queued before it are sent once; accepted poses are not sent again.
   void begin_run() {
     for (auto& [name, held] : robots_) held.is_of_run = false;
   }

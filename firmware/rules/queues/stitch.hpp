@@ -17,8 +17,7 @@ inline constexpr std::size_t kMostStitched = 64;
 /// The most cells of a stitched grid. Each takes a byte of memory while the grid is packed.
 inline constexpr std::int64_t kMostStitchedCells = 4 << 20;
 
-/// A stitched grid with gaps has at most so many times the cells of its grids; a cell of two grids counts
-/// twice.
+/// A grid with gaps has at most so many times its grids' cells; a cell of two grids counts twice.
 inline constexpr std::int64_t kMostFilled = 4;
 
 /// Grids that become one grid: their indices, in order, and the rectangle that they fill.
@@ -32,9 +31,8 @@ struct Stitch {
 using Known = std::function<bool(const Cells& all, std::span<const Cells> grids)>;
 
 /// Finds the grids that fill a larger rectangle together with the first one. `grids`: on one lattice, in the
-/// order in which they were made. A gap is allowed only if `known` is true of it, because the server's cells
-/// there would be unknown otherwise. Grids that are left out overlap no newer grid that goes, so that no old
-/// cell is sent after a newer one.
+/// order in which they were made. A gap is allowed only if `known` is true of it, or the server's cells there
+/// would be unknown. Grids left out overlap no newer grid that goes, so that no old cell follows a newer one.
 Stitch stitch(std::span<const Cells> grids, const Known& known = {});
 
 /// Whether `tiles`, which lie within `all`, fill it without a gap.

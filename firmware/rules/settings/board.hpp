@@ -19,8 +19,7 @@ struct Board {
   static const codec::Row kRow;
 };
 
-/// Parses board.json of an image. Returns all errors at once, as for the settings; an unknown key is an
-/// error.
+/// Parses an image's board.json. Returns all errors at once, as for the settings; unknown keys are errors.
 std::expected<Board, std::vector<Error>> parse_board(std::string_view json);
 
 }  // namespace adit::settings

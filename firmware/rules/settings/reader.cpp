@@ -215,8 +215,7 @@ void check_listen(const Settings& settings, std::vector<Error>& errors) {
   }
 }
 
-/// Names are unique. An alias is neither another robot's alias nor a robot's name, so that a sender is
-/// unambiguous.
+/// Names are unique. An alias is no other robot's alias and no robot's name, so that senders are unambiguous.
 void check_robots(const std::vector<Robot>& robots, std::vector<Error>& errors) {
   for (std::size_t i = 0; i < robots.size(); ++i) {
     const std::string name = icd::sentence("robots[", i, "].name"),

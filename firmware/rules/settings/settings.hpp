@@ -176,8 +176,7 @@ struct Error {
   }
 };
 
-/// For a file that people edit: sets Error::at, the place in `json` of each error's key, or of the object
-/// that lacks it.
+/// For a file that people edit: sets Error::at, the place in `json` of each key, or of the object without it.
 void find_places(std::string_view json, std::vector<Error>& errors);
 
 /// Returns all errors at once, in the file's order. An unknown key is an error, which lists the known keys.

@@ -30,11 +30,9 @@ std::expected<Subnet, std::string> parse_subnet(std::string_view text);
 /// The subnet without the host: "10.1.1.0/24".
 std::string to_text(const Subnet& subnet);
 
-/// Whether the subnets share an address.
 bool overlaps(const Subnet& a, const Subnet& b);
 
-/// The Command Post's nominal subnets, which a team should avoid (ICD 3): 10.1.1.0/24, 10.2.1.0/24,
-/// 10.100.0.0/16.
+/// The Command Post's nominal subnets, to be avoided (ICD 3): 10.1.1.0/24, 10.2.1.0/24, 10.100.0.0/16.
 std::span<const Subnet> command_post_subnets();
 
 }  // namespace adit::settings

@@ -43,8 +43,7 @@ struct Content {
 
 /// The text to seal: parts, each as "NAME SIZE", a newline, and SIZE bytes.
 std::string write(const Content& content);
-/// Each part must occur exactly once, tokens and the certificate at most once; other parts are errors. An
-/// error is a sentence.
+/// Each part must occur once; tokens and certificate are optional; others are errors. An error is a sentence.
 std::expected<Content, std::string> read(std::string_view text);
 
 }  // namespace adit::spare

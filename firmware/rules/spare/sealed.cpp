@@ -10,8 +10,7 @@ namespace {
 
 constexpr std::size_t kGroup = 4;
 
-// Format: the magic, the version byte and a zero, the salt, the nonce, and the sealed content with its tag.
-// The tag authenticates all bytes before it.
+// Format: magic, version byte, zero, salt, nonce, sealed content, and a tag that authenticates them all.
 constexpr std::string_view kMagic = "adit-spare";
 constexpr std::uint8_t kVersion = 1;
 static_assert(kMagic.size() + 2 == kExportHead);

@@ -42,12 +42,10 @@ struct Seed {
 std::expected<std::string, std::string> seal(std::string_view content, std::string_view code,
                                              const Seed& seed);
 
-/// The content of a whole file. Worker thread. An error is a sentence: not an export, a later Adit's,
-/// truncated, changed, or the wrong code.
+/// The content of a file. Worker thread. Errors: no export, a later Adit's, truncated, changed, wrong code.
 std::expected<std::string, std::string> unseal(std::string_view file, std::string_view code);
 
-/// Why a file is not a readable export, or "". `file`: at least its first kExportHead bytes, or the whole of
-/// a shorter file.
+/// Why a file is no readable export, or "". `file`: the first kExportHead bytes, or all of a shorter file.
 std::string export_error(std::string_view file);
 
 }  // namespace adit::spare

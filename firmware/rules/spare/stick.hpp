@@ -13,8 +13,7 @@
 /// Names of export files on a stick. Names only inform; the sealed content says whose export it is.
 namespace adit::spare {
 
-/// "adit-10.0.0.1-20261123T231600Z.adit-spare". `box`: its address. `at`: start of its standby, in seconds
-/// since 1970 by its clock.
+/// "adit-10.0.0.1-20261123T231600Z.adit-spare": `box`'s address, and its standby `at`, in seconds since 1970.
 std::string file_name(std::string_view box, double at);
 
 /// Whether a file on a stick may be an export: *.adit-spare, at most 96 characters of visible ASCII and
@@ -34,8 +33,7 @@ bool is_before(std::string_view left, std::string_view right);
 
 }  // namespace adit::spare
 
-/// Messages, as files, about the stick in the box between aditd, which has no privileges, and adit-spare,
-/// which runs as root: README.md.
+/// Messages, as files, about the stick, between aditd (no privileges) and adit-spare (root): README.md.
 namespace adit::spare {
 
 /// A file system on a USB stick, mounted if the box can read it.

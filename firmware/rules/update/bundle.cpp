@@ -107,8 +107,7 @@ constexpr std::pair<std::string_view, std::string_view> kMeanings[] = {
     {"Error reading from file", kDamaged},
 };
 
-/// Reads one of RAUC's slots, an object with one member, the slot's name. `next`: name of the slot to start
-/// next.
+/// Reads a slot of RAUC, an object with one member, the slot's name. `next`: the slot to start next.
 void take_slot(const Value& slot, const std::string& booted, const std::string& next,
                RunningSystem& running) {
   const auto* named = std::get_if<Value::Object>(&slot.is);

@@ -36,8 +36,7 @@ bool is_bundle_name(std::string_view name);
 /// Whether the name has only visible ASCII and spaces.
 bool is_plain(std::string_view name);
 
-/// The update that a file's name promises; the best compares greatest. toolchain/image names an update
-/// COMPATIBLE-VERSION.raucb.
+/// A file name's promise; the best compares greatest. toolchain/image names files COMPATIBLE-VERSION.raucb.
 struct Promise {
   bool for_this_board = false;
   std::optional<Version> version = {};
@@ -63,8 +62,7 @@ struct RunningSystem {
   friend bool operator==(const RunningSystem&, const RunningSystem&) = default;
 };
 
-/// Read the output of `rauc info --output-format=json` and `rauc status --output-format=json`. RAUC does not
-/// know RunningSystem::version.
+/// Read `rauc info --output-format=json` and `rauc status ...`, which does not know RunningSystem::version.
 std::expected<Bundle, std::string> read_info(std::string_view json);
 std::expected<RunningSystem, std::string> read_status(std::string_view json);
 

@@ -31,9 +31,8 @@ inline constexpr std::chrono::seconds kGoodWithin{300};
 /// Why no update is installed while that version is on trial.
 std::string wait_for_trial(std::string_view version);
 
-/// `late`: kGoodWithin is over. A slot that is not on trial is good once aditd is ready, so that short runs
-/// (a loose plug) do not count against it. It never causes a restart, because its fault is the settings,
-/// which a user corrects on a running box.
+/// `late`: kGoodWithin is over. A slot not on trial is good once aditd is ready, so that short runs (a loose
+/// plug) do not count against it. It causes no restart, as its fault is the settings, which a user corrects.
 Health classify(bool trial, const Ready& ready, bool late);
 
 }  // namespace adit::update

@@ -11,8 +11,7 @@
 namespace adit::update {
 
 /// The slot that was healthy last and is to stay, stored across boots. Successful updates and the operator
-/// change it; the boot loader, which changes slots silently, does not. It is deleted before that slot is
-/// written.
+/// change it; the boot loader, which changes slots silently, does not. Deleted before that slot is written.
 struct ProvenSlot {
   std::string slot = "";  // "": not known yet
   std::string version = "";
@@ -20,12 +19,10 @@ struct ProvenSlot {
   friend bool operator==(const ProvenSlot&, const ProvenSlot&) = default;
 };
 
-/// The proven slot after the running one was found good. Another slot than the proven one replaces it only if
-/// it was on `trial`.
+/// The proven slot after the running one was found good. It replaces another one only if it was on `trial`.
 ProvenSlot proven_now(ProvenSlot before, const RunningSystem& running, bool trial);
 
-/// Returns a sentence with the reason if an unexpected slot runs. "": the proven slot runs or is unknown, or
-/// the running slot is on `trial`.
+/// A sentence about an unexpected slot that runs. "": proven, on `trial`, or the proven one is unknown.
 std::string slot_warning(const ProvenSlot& proven, const RunningSystem& running, bool trial);
 /// The same if the proven slot cannot be read; `why` says so.
 std::string stray_if_unknown(const RunningSystem& running, bool trial, std::string_view why);
@@ -73,8 +70,7 @@ bool on_trial(const LastUpdate& last_update, const RunningSystem& running, const
 
 }  // namespace adit::update
 
-/// Messages, as files, between aditd, which has no privileges, and adit-update, which runs as root:
-/// README.md.
+/// Messages, as files, between aditd (no privileges) and adit-update (root): README.md.
 namespace adit::update {
 
 /// aditd's request and the uploaded bundle, in aditd's state directory. adit-update removes both.

@@ -17,8 +17,7 @@ namespace adit::admin {
 /// rejected. A damaged file of passwords is set aside; the code then sets new ones.
 class Accounts final : public api::Keys {
  public:
-  /// In the state directory: the password hashes, and before the first password the code, if the label has
-  /// none.
+  /// In the state directory: the password hashes. Before the first password: the code, unless on the label.
   static constexpr const char* kFile = "access.json";
   static constexpr const char* kCodeFile = access::kCodeFile;
   /// Also there: the known devices. An unreadable file stays unchanged until the next start.

@@ -34,8 +34,7 @@ class Certificate final : public api::Certificate {
     std::function<std::string()> address;
   };
 
-  /// `state_folder`: for requests. `runtime_folder`: see kStatusFolder. `units`: as host::kStartedAtBoot.
-  /// `loop` must outlive this object.
+  /// `state_folder`: for requests. `units`: as host::kStartedAtBoot. `loop` must outlive this object.
   Certificate(loop::Loop& loop, const std::string& state_folder, const std::string& runtime_folder,
               Callbacks asked, const std::string& units = host::kStartedAtBoot);
 

@@ -55,8 +55,7 @@ class ClockSetting final : public api::Clock {
   /// Wait before an unanswered or failed request is repeated.
   static constexpr std::chrono::seconds kAskAgain{60};
 
-  /// `state_folder`: for requests. `status_folder`: for answers. `units`: as host::kStartedAtBoot.
-  /// `loop` must outlive this object.
+  /// `state_folder`: requests. `status_folder`: answers. `units`: host::kStartedAtBoot. `loop` outlives this.
   ClockSetting(loop::Loop& loop, const std::string& state_folder, const std::string& status_folder,
                std::uint16_t chronyd, const std::string& units = host::kStartedAtBoot)
       : loop_(loop),

@@ -21,9 +21,8 @@ class FactoryReset {
   std::expected<void, std::string> begin();
   /// If begun, deletes settings, tokens, the certificate, passwords, the code, sessions, stored runs, and
   /// queued and rejected messages, lets stamps step back that are far ahead (forward::StampFloor::forget()),
-  /// and requests factory addresses from adit-network. Then returns true. Call before other objects use
-  /// these. Error: the reset is incomplete, or it is unknown whether it has begun; in the second case all
-  /// stays.
+  /// requests factory addresses from adit-network, and returns true. Call before other objects use these.
+  /// Error: the reset is incomplete, or (then all stays) it is unknown whether it has begun.
   std::expected<bool, std::string> finish();
   /// Why finish() does not know whether a reset has begun, or "". The box must then be a standby.
   const std::string& unread() const { return unread_; }

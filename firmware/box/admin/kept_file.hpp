@@ -25,9 +25,8 @@ auto read_kept_file(const std::string& file, Read read, std::string& unread)
   return *std::move(kept);
 }
 
-/// Stores the acknowledged alarms in a file that only aditd can read, across restarts. If the file is damaged
-/// or unreadable, logs it and acknowledges no alarm, so the light blinks. An unreadable file stays unchanged
-/// until the next start.
+/// Stores the acknowledged alarms in a file for aditd alone, across restarts. If it is damaged or unreadable,
+/// logs it and acknowledges no alarm, so the light blinks. An unreadable file stays until the next start.
 class AcknowledgementFile {
  public:
   static constexpr const char* kFile = "acknowledged.json";  // in the state directory
@@ -46,9 +45,8 @@ class AcknowledgementFile {
   std::shared_ptr<bool> failed_ = std::make_shared<bool>(false);  // used by the writer thread
 };
 
-/// Stores the sessions in a file that only aditd can read, across restarts and crashes. A boot ends all
-/// sessions. A faulty file is logged, and users log in again. An unreadable file stays unchanged until the
-/// next start.
+/// Stores the sessions in a file for aditd alone, across restarts and crashes. A boot ends all sessions. A
+/// faulty file is logged, and users log in again. An unreadable file stays until the next start.
 class SessionKeeper {
  public:
   static constexpr const char* kFile = "sessions.json";  // in the runtime directory

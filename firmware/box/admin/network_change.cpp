@@ -10,8 +10,7 @@
 namespace adit::admin {
 namespace {
 
-/// Resolves names on the team's side alone, because mDNS listens only there. Error: the interfaces cannot be
-/// read.
+/// Resolves names on the team's side alone, as mDNS listens only there. Error: the interfaces cannot be read.
 std::expected<api::PortRow, std::string> port_of(const char* side, const std::string& interface) {
   const auto all = ADIT_TRY(host::interfaces());
   const auto found = std::ranges::find(all, interface, &host::Interface::name);
@@ -165,8 +164,7 @@ icd::Checked<void> NetworkChange::confirm(const std::string& local) {
   return send_decision(network::Decision::Command::Confirm, *waits);
 }
 
-/// An address from DHCP or a link-local one is not known in advance. Any address but the old one confirms
-/// such a change.
+/// An address from DHCP or a link-local one is not known in advance, so any but the old one confirms it.
 icd::Checked<void> NetworkChange::check_confirmable(const network::Numbers& wanted,
                                                     const std::string& local) const {
   const bool fixed = wanted.mode == network::Mode::Static;

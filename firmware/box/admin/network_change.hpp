@@ -35,11 +35,9 @@ class NetworkChange final : public api::Network {
   icd::Checked<void> confirm(const std::string& local) override;
   icd::Checked<void> revert() override;
 
-  /// Call each second. Reads the result of the last change, and requests routes to the endpoints of the
-  /// settings and of all courses.
+  /// Call each second. Reads the last change's result, requests routes to settings' and courses' endpoints.
   void every_second();
-  /// The host to ask for an endpoint on the Command Post's side: the endpoint or its gateway. "": no route.
-  /// Error: the box's addresses are not known.
+  /// The host for an endpoint: itself or its gateway. "": no route. Error: the box's addresses are unknown.
   std::expected<std::string, std::string> next_hop(const settings::Address& endpoint) const;
 
   /// Asks adit-network who else has the address of `interface`, on the Command Post's side, and at which port
@@ -54,8 +52,7 @@ class NetworkChange final : public api::Network {
   facts::Network fact() const;
 
  private:
-  /// Reads the watch's file if the last reading is old. If the file cannot be read, the last known addresses
-  /// stay for network::kTakenFor.
+  /// Reads the watch's file if the last reading is old. If it fails, addresses stay for network::kTakenFor.
   void read_taken() const;
   void lead_to_endpoints();
   std::optional<facts::SwappedAddress> swapped_address() const;

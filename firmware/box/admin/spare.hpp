@@ -25,8 +25,7 @@ class SpareStick {
 
   using Taken = std::function<void(std::string)>;
 
-  /// `state_folder`: for requests. `status_folder`: for answers. `taken` receives each export read from a
-  /// stick. `loop` must outlive this object.
+  /// `state_folder`: requests. `status_folder`: answers. `taken` gets each read export. `loop` outlives this.
   SpareStick(loop::Loop& loop, const std::string& state_folder, const std::string& status_folder,
              Taken taken);
 
@@ -66,9 +65,9 @@ class Spare final : public api::Spare {
     std::function<void()> restart;
   };
 
-  /// `status_folder`: of adit-spare. `stuck`: why the box is a standby in spite of its file (an unfinished
-  /// takeover, unreadable settings), or "". `workers`: for jobs of 0.1 s. `loop`, `workers` and `takeover`
-  /// must outlive this object.
+  /// `status_folder`: adit-spare's. `stuck`: why the box is a standby in spite of its file (unfinished
+  /// takeover, unreadable settings), or "". `workers`: jobs of 0.1 s. `loop`, `workers`, `takeover` outlive
+  /// it.
   Spare(loop::Loop& loop, loop::Workers& workers, Takeover& takeover, std::string state_folder,
         const std::string& status_folder, const std::string& stuck, Callbacks asked);
 

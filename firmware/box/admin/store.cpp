@@ -77,8 +77,7 @@ bool Store::can_be_read() const {
   return read(unread) && unread.empty();
 }
 
-/// Leaves out settings of a later Adit that this one does not know, so that a reverted update preserves the
-/// others.
+/// Leaves out a later Adit's settings that this one does not know, so a reverted update keeps the others.
 std::expected<Store::LoadedSettings, std::string> Store::read(std::string& unread) const {
   LoadedSettings loaded;
   loaded.saved = host::can_exist(file());

@@ -13,11 +13,9 @@ namespace adit::admin {
 
 using settings::token_names;
 
-/// Stores settings and tokens, and decides which apply: the saved ones in the state directory, or else the
-/// given ones.
-///
-/// Saved settings and tokens are on trial until settle(). revert() restores the earlier settings, after a
-/// crash or a power cut as well.
+/// Stores settings and tokens. The saved ones in the state directory apply, or else the given ones. Saved
+/// ones are on trial until settle(); revert() restores the earlier settings, even after a crash or a power
+/// cut.
 class Store {
  public:
   Store(std::string given_settings, std::string given_secrets, std::string state_folder);
@@ -42,8 +40,7 @@ class Store {
   std::expected<void, std::string> save(const settings::Settings& settings);
   std::expected<void, std::string> save_token(const std::string& name,
                                               const std::optional<icd::BearerToken>& token);
-  /// Ends the trial with success. Removes tokens of deleted courses, because no page shows them, and marks
-  /// the saved files (host::kSavedMark).
+  /// Ends the trial. Removes deleted courses' tokens, which no page shows; marks files (host::kSavedMark).
   void settle(const settings::Settings& settings);
   /// False: there is no trial, or the revert failed.
   bool revert();

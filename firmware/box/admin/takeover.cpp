@@ -77,8 +77,8 @@ double stamp_offset(const spare::ExportInfo& about, double stamp, double wall) {
   return stamp - since - about.stamp;
 }
 
-/// The first box's ports (`taken`), at all addresses of the team interface or, without one, at the addresses
-/// at which this box listens.
+/// The first box's ports (`taken`) at all addresses of the team interface, or else at the addresses in
+/// `here`.
 std::vector<settings::Address> listen_here(const settings::Team& here,
                                            const std::vector<settings::Address>& taken) {
   std::vector<settings::Address> own = here.listen, all;

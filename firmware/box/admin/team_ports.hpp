@@ -16,8 +16,7 @@ class TeamPorts {
   /// Wait before a request is repeated that was read without an effect. An unread one stays.
   static constexpr std::chrono::seconds kAskAgain{60};
 
-  /// `state_folder`: for requests. `rules_folder`: of network::kPortRulesFile. `loop` must outlive this
-  /// object.
+  /// `state_folder`: requests. `rules_folder`: of network::kPortRulesFile. `loop` must outlive this object.
   TeamPorts(loop::Loop& loop, std::string state_folder, std::string rules_folder)
       : loop_(loop), state_(std::move(state_folder)), rules_(std::move(rules_folder)) {}
 

@@ -165,7 +165,6 @@ const char* pending_action(update::Request::Command what) {
   return what == Command::Restart || what == Command::Back ? "restarting" : "checking";
 }
 
-/// Refuses a bundle of that size if it does not fit into the directory.
 icd::Checked<void> check_room(const std::string& folder, std::uint64_t size) {
   const auto disk = host::disk_of(folder);
   if (!disk)

@@ -13,8 +13,7 @@
 
 namespace adit::admin {
 
-/// A bundle that the writer thread stores as it arrives. A slow disk slows the sender and never blocks the
-/// loop.
+/// A bundle that the writer thread stores on arrival. A slow disk slows the sender, never blocks the loop.
 class UpdateUpload final : public api::Upload {
  public:
   /// Bytes collected for one write. The sender is paused if as many are queued during a write.

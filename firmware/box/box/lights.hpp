@@ -74,13 +74,11 @@ class Lights {
   panel::Lights shown_{};
 };
 
-/// Watches the button on the loop and shows the effect of a release while it is held. If the line cannot be
-/// read, the press is cancelled and the line is tried again. A button that is pressed then, or at the start,
-/// counts from its next press.
+/// Watches the button on the loop, and shows the effect of a release while it is held. If the line cannot be
+/// read, cancels the press and retries. A button pressed then, or at the start, counts from its next press.
 class ButtonWatch {
  public:
-  /// A null `line`: no button. `lights` outlives this. `pressed` is called when a press ends, and must not
-  /// destroy this.
+  /// Null `line`: no button. `lights` outlives this. `pressed` (a press ended) must not destroy this.
   ButtonWatch(loop::Loop& loop, std::unique_ptr<panel::ButtonLine> line, Lights& lights,
               std::function<void(panel::Press)> pressed);
 

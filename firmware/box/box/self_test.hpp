@@ -29,8 +29,7 @@ struct TestTarget {
   icd::Redaction typed = icd::Redaction();  // tokens that are not stored
 };
 
-/// The written settings with the candidate, checked as if it were saved. Refused with 422 by the candidate's
-/// members: "scoring.address: ...".
+/// The settings with the candidate, as if saved. Refused (422) by its members: "scoring.address: ...".
 icd::Checked<TestTarget> tried_of(const api::Candidate& candidate, const settings::Settings& written,
                                   const host::Secrets& secrets);
 
@@ -102,8 +101,7 @@ class EndpointTest {
     std::function<void(icd::Uri uri)> on_claimed;  // at the request, and at its end
   };
 
-  /// `done` gets the result of each step, within its call or later, and must not destroy this object. The
-  /// references must outlive this object.
+  /// `done` gets each step's result, now or later, and must not destroy this. The references outlive this.
   EndpointTest(loop::Loop& loop, const Turns& turns, const TestTarget& tried, steps::EndpointKind asked,
                std::function<void(api::TestStep)> done);
 
@@ -158,8 +156,7 @@ class SelfTest final : public api::SelfTest {
   static constexpr std::chrono::milliseconds kProbeWithin{8000}, kProbePoll{100};
   using Turns = EndpointTest::Turns;
 
-  /// `settings`: in use. `tried`: tried_of() with the written settings. `changed`: after each step. All
-  /// outlive this.
+  /// `settings`: in use. `tried`: tried_of() the written ones. `changed`: after each step. All outlive this.
   SelfTest(loop::Loop& loop, const settings::Settings& settings,
            std::function<icd::Checked<TestTarget>(const api::Candidate&)> tried, Turns turns,
            const admin::NetworkChange& network, std::function<void()> changed);

@@ -65,9 +65,8 @@ class Spare final : public api::Spare {
     std::function<void()> restart;
   };
 
-  /// `status_folder`: adit-spare's. `stuck`: why the box is a standby in spite of its file (unfinished
-  /// takeover, unreadable settings), or "". `workers`: jobs of 0.1 s. `loop`, `workers`, `takeover` outlive
-  /// it.
+  /// `status_folder`: adit-spare's. `stuck`: why the box is a standby despite its file (unfinished takeover,
+  /// unreadable settings), or "". `workers`: jobs of 0.1 s. `loop`, `workers` and `takeover` outlive this.
   Spare(loop::Loop& loop, loop::Workers& workers, Takeover& takeover, std::string state_folder,
         const std::string& status_folder, const std::string& stuck, Callbacks asked);
 

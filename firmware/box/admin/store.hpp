@@ -14,8 +14,7 @@ namespace adit::admin {
 using settings::token_names;
 
 /// Stores settings and tokens. The saved ones in the state directory apply, or else the given ones. Saved
-/// ones are on trial until settle(); revert() restores the earlier settings, even after a crash or a power
-/// cut.
+/// ones are on trial until settle(); revert() restores the earlier settings, even after a crash.
 class Store {
  public:
   Store(std::string given_settings, std::string given_secrets, std::string state_folder);

@@ -77,8 +77,7 @@ double stamp_offset(const spare::ExportInfo& about, double stamp, double wall) {
   return stamp - since - about.stamp;
 }
 
-/// The first box's ports (`taken`) at all addresses of the team interface, or else at the addresses in
-/// `here`.
+/// The first box's ports (`taken`) at all addresses of the team interface, or else at the ones of `here`.
 std::vector<settings::Address> listen_here(const settings::Team& here,
                                            const std::vector<settings::Address>& taken) {
   std::vector<settings::Address> own = here.listen, all;

@@ -71,8 +71,7 @@ class Takeover {
   /// `content`: from spare::write(). Error: the takeover has not begun.
   std::expected<void, std::string> begin(const std::string& content);
   /// If begun, takes over reports and runs into the ledger, settings, tokens, certificate and stamp floor,
-  /// and returns true. Call before others use these. Error: unfinished; the box must stay a standby until
-  /// finished.
+  /// and returns true. Call before others use these. Error: unfinished; the box must be a standby until then.
   std::expected<bool, std::string> finish(const loop::Loop& loop);
   /// Why finish() does not know whether a takeover has begun, or "".
   const std::string& unread() const { return unread_; }

@@ -156,7 +156,7 @@ class SelfTest final : public api::SelfTest {
   static constexpr std::chrono::milliseconds kProbeWithin{8000}, kProbePoll{100};
   using Turns = EndpointTest::Turns;
 
-  /// `settings`: in use. `tried`: tried_of() the written ones. `changed`: after each step. All outlive this.
+  /// `settings`: in use. `tried`: tried_of(), written settings. `changed`: after each step. All outlive this.
   SelfTest(loop::Loop& loop, const settings::Settings& settings,
            std::function<icd::Checked<TestTarget>(const api::Candidate&)> tried, Turns turns,
            const admin::NetworkChange& network, std::function<void()> changed);

@@ -41,7 +41,6 @@ class DataPath {
 
   bool is_at_data() const { return wanted_ && depth_ == 2 && data_named_; }
 
-  /// A piece of a text value.
   void text(std::string_view piece) {
     if (depth_ == 1 && type_named_)
       type_ += piece.substr(0, kGrid.size() + 1 - std::min(type_.size(), kGrid.size() + 1));

@@ -24,7 +24,7 @@ std::optional<Value> patch(const T& before, const T& now) {
   return patch(T::kRow, &before, &now);
 }
 
-/// Applies a patch. std::nullopt: none of `before`. Any peer may send both; the result's size is limited.
+/// Applies a patch. std::nullopt: not one of `before`. Any peer may send both; the result's size is limited.
 std::optional<Value> apply_patch(Value before, const Value& patch);
 
 }  // namespace adit::codec

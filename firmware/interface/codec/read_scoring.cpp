@@ -57,7 +57,6 @@ std::string read_name(const Field& field) {
   return {};
 }
 
-/// Whether an optional field is a number.
 bool has_number(const Field& field) {
   return field.is<double>() || field.is<std::int64_t>() || field.is<std::uint64_t>();
 }

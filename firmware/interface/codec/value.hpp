@@ -58,13 +58,11 @@ auto* find_member(Object& object, std::string_view name) {
 
 using SharedText = std::shared_ptr<const std::string>;
 
-/// An array left as text of a well-formed document, so that a large message is never a tree in memory. Each
-/// element is parsed on request and not stored.
+/// An array left as text, so that a large message is never a tree in memory. Elements are parsed on request.
 class List {
  public:
   /// Start of each element in the text, then the start of a next one. Empty for an empty array.
   using Starts = std::vector<std::uint32_t>;
-  /// Functions that read elements of a format.
   struct Format {
     icd::Checked<Value> (*element)(const SharedText& text, std::size_t begin, std::size_t end);
     bool (*reals)(std::string_view element, std::span<const std::string_view> names, std::span<double> into);

@@ -10,8 +10,7 @@
 
 namespace adit::icd {
 
-/// A bearer token (ICD 4, RFC 6750). It has no stream operator and no conversion. reveal() is the only
-/// access; its caller must not print the text.
+/// A bearer token (ICD 4, RFC 6750). reveal() is the only access to it; its caller must not print the text.
 class BearerToken {
  public:
   static constexpr std::size_t kLongest = 256;

@@ -26,7 +26,7 @@ class Chunk {
   std::span<const std::uint8_t> bytes_;
 };
 
-/// Bytes in chunks of at most kChunk, which are shared (also by copies) and never change. So a map can be
+/// Bytes in chunks of at most kChunk, shared (also by copies) and never changed once written. So a map can be
 /// queued, merged, sent and retried without a second copy. Threads may share chunks, but not a ChunkedBytes.
 class ChunkedBytes {
  public:

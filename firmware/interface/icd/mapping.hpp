@@ -168,8 +168,7 @@ struct Marker {
   friend bool operator==(const Marker&, const Marker&) = default;
 };
 
-/// True if the marker is added and cannot be seen: its color has alpha 0 (ROS's default, ICD 6.6), and
-/// neither its points nor its mesh have colors of their own.
+/// True if the marker is added and invisible: alpha 0 (ROS's default), and no colors of its points or mesh.
 bool is_invisible(const Marker& marker);
 
 /// The bytes that a marker takes in memory or in a message: at least the larger, and little more.

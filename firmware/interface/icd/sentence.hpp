@@ -22,7 +22,7 @@ std::string size_text(std::uint64_t bytes);
 /// A sender's text for a sentence: in quotation marks, on one line, cut after 40 bytes.
 std::string quote_text(std::string_view text);
 
-/// For HTML, also in double quotes. A newline or tab becomes a blank, another control character U+FFFD.
+/// For HTML, also for an attribute in double quotes. A newline or tab becomes a blank, other controls U+FFFD.
 std::string escape_html(std::string_view text);
 
 inline void append_part(std::string& sentence, std::string_view part) {

@@ -21,7 +21,6 @@ std::string_view pem_body(std::string_view block) {
   return last == std::string_view::npos || first >= last ? "" : block.substr(first, last - first);
 }
 
-/// Bytes of the DER, or nothing.
 std::vector<std::uint8_t> der_of(std::string_view block) {
   std::string digits(pem_body(block));
   std::erase_if(digits, [](char each) { return icd::trim({&each, 1}).empty(); });

@@ -14,7 +14,6 @@ bool is_command_post(const Condition& condition) {
   return condition.id.starts_with("command_post_") && !is(condition, "command_post_throttling");
 }
 
-/// Whether the box has lost its link to the Command Post.
 bool is_link_loss(const Condition& condition) {
   return condition.id == "cable_out:command_post" || condition.id == "cables_exchanged" ||
          condition.id == "no_address";

@@ -48,7 +48,6 @@ constexpr std::string_view name_of(Arrival arrival) {
   return kArrivalWords[static_cast<std::size_t>(arrival)];
 }
 
-/// An artifact report and its state.
 struct ReportRow {
   std::int64_t number = 0;
   std::string type = {};
@@ -153,8 +152,7 @@ struct EndpointRow {
   static const codec::Row kRow;
 };
 
-/// A map, state or markers that the Command Post rejected, or a map that was put aside (status 0), stored
-/// until it is sent again or discarded.
+/// A message that the Command Post rejected, or a map that aditd put aside (status 0), kept for the operator.
 struct RejectedRow {
   std::uint64_t number = 0;
   std::string kind = {}, robot = {};

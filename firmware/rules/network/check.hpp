@@ -30,8 +30,7 @@ struct Findings {
   std::vector<std::string> warnings;  // effects that the user may not intend
 };
 
-/// The first network of the Command Post's side that overlaps the team's subnet, or "". Addresses from DHCP
-/// are not known in advance and are not checked.
+/// The Command Post's first network that overlaps the team's subnet, or "". DHCP addresses are not checked.
 std::string overlap_of(const Numbers& wanted, const Circumstances& circumstances);
 
 /// `present`: the interfaces' numbers now, if known.

@@ -419,7 +419,7 @@ std::optional<Heights> heights_of(const Sheet& sheet) {
                  rounded(height_of(beyond(known - 1 - few)) + kHeightStep / 2)};
 }
 
-/// Lays a map's sheet over `before`, at all levels. Fills in tiles, area and heights. Requires the layer.
+/// Lays a map's sheet over `before`, at all levels. Fills in tiles, area and heights. Its layer must be set.
 void lay(const Sheet& sheet, const Canvas& before, Drawing& drawing) {
   const bool is_grid = drawing.layer.kind == LayerKind::Grid;
   Layers layers{before, drawing};
@@ -513,7 +513,6 @@ class PointCutter {
   std::vector<std::uint8_t> cut_;  // the first bytes of a point that continues in the next piece
 };
 
-/// Reads one coordinate of a point.
 template <class Float, bool Bigendian>
 Float coordinate(const std::uint8_t* at) {
   static_assert(std::endian::native == std::endian::little);

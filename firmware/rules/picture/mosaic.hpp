@@ -111,7 +111,7 @@ class Mosaic {
   /// Shifts all times: the time of day was set ahead by `seconds`.
   void move(double seconds);
 
-  /// Restores a tile's state from before a restart. Call in their order. False: wrong order, or no room.
+  /// Restores a tile's state from before a restart, in the states' order. False: wrong order, or no room.
   bool restore(const Layer& layer, const TileIndex& at, Tile tile, double stamp);
   /// Restores the data of a layer, except its tiles.
   void restore(const LayerView& view);

@@ -67,8 +67,7 @@ class Canvas {
 /// the gaps with these cells: each has the newest value that was packed, or was never sent to the present map
 /// of the Command Post. A gap with unknown cells is not filled. Cells become unknown by the memory's limit, a
 /// failed try, a restart, another Command Post, or a run that may still be the previous one. A map that
-/// failed is retried before newer maps and drawn again, so a filled gap is never older than cells that
-/// arrived.
+/// failed is retried before newer maps and drawn again, so a filled gap is never older than arrived cells.
 class Canvases {
  public:
   static constexpr std::size_t kMostTiles = 4096;       // with known cells: 16 MiB

@@ -244,8 +244,7 @@ class MapQueue {
   bool replaces_any(const icd::MapUpdate& map) const;
   /// Whether pop() could merge or stitch it with the last queued map of its sender.
   bool can_join_last(const icd::MapUpdate& map) const;
-  /// If a newer queued grid covers `map`, which is not queued, it stands for `map` from now on. Nothing: none
-  /// does.
+  /// If a newer queued grid covers `map`, which is not queued, it stands for `map` from now on.
   std::optional<ReplacedMaps> absorb(const QueuedMap& map);
 
   std::size_t count() const;

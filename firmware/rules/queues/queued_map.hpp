@@ -91,7 +91,6 @@ struct QueuedMap {
   std::optional<icd::Stamp> again{};
 };
 
-/// States of an accepted map.
 enum class MapState : std::uint8_t {
   Queued,
   Packing,

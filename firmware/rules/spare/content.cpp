@@ -36,7 +36,6 @@ struct Part {
   std::string_view name, bytes;
 };
 
-/// Removes the first part from `rest` and returns it.
 std::optional<Part> take_part(std::string_view& rest) {
   const std::size_t end = rest.substr(0, kLongestHead).find('\n');
   if (end == std::string_view::npos) return std::nullopt;

@@ -85,7 +85,6 @@ struct Fault {
   std::string sentence = "";  // "": no message
   friend bool operator==(const Fault&, const Fault&) = default;
 };
-/// Reads RAUC's standard output and standard error.
 Fault fault_in(std::string_view out, std::string_view err);
 
 /// Why the bundle must not be installed, or "". `again`: allows the running version.

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "loop/simulated_time.hpp"
-#include "panel/held.hpp"
 #include "panel/messages.hpp"
+#include "panel/reopened.hpp"
 #include "panel/watched_lines.hpp"
 #include "panel/wire.hpp"
 

@@ -1,4 +1,6 @@
 // Lost lines and chips are opened again, with the test's own libgpiod.
+#include "panel/reopened.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -8,7 +10,6 @@
 
 #include "loop/file_descriptor.hpp"
 #include "panel/fake_gpiod.hpp"
-#include "panel/held.hpp"
 #include "panel/watched_lines.hpp"
 
 namespace adit::panel {

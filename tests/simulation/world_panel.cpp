@@ -1,8 +1,8 @@
 // Implements panel/lines.hpp's simulated panel: records the lights in the history.
 #include <optional>
 
-#include "panel/held.hpp"
 #include "panel/lines.hpp"
+#include "panel/reopened.hpp"
 #include "simulation/world.hpp"
 
 namespace adit::panel {

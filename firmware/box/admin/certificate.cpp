@@ -10,11 +10,11 @@
 namespace adit::admin {
 
 Certificate::Certificate(loop::Loop& loop, const std::string& state_folder, const std::string& runtime_folder,
-                         Callbacks asked, const std::string& units)
+                         Callbacks callbacks, const std::string& units)
     : loop_(loop),
       adit_certificate_(loop, "adit-certificate", state_folder, runtime_folder + '/' + kStatusFolder,
                         kTakenUpWithin, units),
-      asked_(std::move(asked)),
+      callbacks_(std::move(callbacks)),
       address_until_(loop.now() + kAddressWithin),
       timer_(loop.timer([this] { poll(); })) {
   read();
@@ -27,7 +27,7 @@ api::CertificateView Certificate::state() const {
     view.fingerprint = status->fingerprint;
     view.until = status->until;
   }
-  if (!asked_.serves_tls()) {
+  if (!callbacks_.serves_tls()) {
     view.why = "Adit has no TLS server here: it needs systemd and the package stunnel4";
   } else if (!status) {
     view.why = adit_certificate_.status_error();
@@ -59,7 +59,7 @@ icd::Checked<void> Certificate::check_free() const {
 void Certificate::ask(Command what, Done done) {
   done_ = std::move(done);
   const access::CertificateRequest request{
-      .nonce = host::draw_nonce(), .what = what, .address = asked_.address()};
+      .nonce = host::draw_nonce(), .what = what, .address = callbacks_.address()};
   if (const auto left = adit_certificate_.ask(access::kCertificateRequestFile, request); !left)
     return finish(icd::refuse(icd::Status::ServiceUnavailable, left.error()));
   timer_.call_at(loop_.now() + kLook);
@@ -89,7 +89,7 @@ void Certificate::every_second() {
     return;
   }
   if (kept_at_ && loop_.now() < *kept_at_ + kAskAgain) return;
-  if (fingerprint_.empty() && loop_.now() < address_until_ && asked_.address().empty()) return;
+  if (fingerprint_.empty() && loop_.now() < address_until_ && callbacks_.address().empty()) return;
   kept_at_ = loop_.now();
   ask(Command::Keep, [](const icd::Checked<void>& done) {
     if (!done) host::log(host::Level::Error, "the page has no certificate", {{"why", done.error().sentence}});

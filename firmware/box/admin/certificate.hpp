@@ -36,7 +36,7 @@ class Certificate final : public api::Certificate {
 
   /// `state_folder`: for requests. `units`: as host::kStartedAtBoot. `loop` must outlive this object.
   Certificate(loop::Loop& loop, const std::string& state_folder, const std::string& runtime_folder,
-              Callbacks asked, const std::string& units = host::kStartedAtBoot);
+              Callbacks callbacks, const std::string& units = host::kStartedAtBoot);
 
   api::CertificateView state() const override;
   void replace(const std::string& pem, Done done) override;
@@ -57,7 +57,7 @@ class Certificate final : public api::Certificate {
 
   loop::Loop& loop_;
   host::RootProgram<access::CertificateStatus> adit_certificate_;
-  Callbacks asked_;
+  Callbacks callbacks_;
   const loop::Instant address_until_;
   loop::Source timer_;
   std::string fingerprint_;  // of the certificate on disk; "": there is none, or it cannot be read

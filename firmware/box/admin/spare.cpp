@@ -124,15 +124,15 @@ void SpareStick::finish(const spare::StickStatus& status) {
 }
 
 Spare::Spare(loop::Loop& loop, loop::Workers& workers, Takeover& takeover, std::string state_folder,
-             const std::string& status_folder, const std::string& stuck, Callbacks asked)
+             const std::string& status_folder, const std::string& stuck, Callbacks callbacks)
     : loop_(loop),
       workers_(workers),
       takeover_(takeover),
       state_(std::move(state_folder)),
       stick_(loop, state_, status_folder, [this](std::string file) { on_stick_export(std::move(file)); }),
       stuck_(stuck),
-      asked_(std::move(asked)),
-      restart_(loop.timer([this] { asked_.restart(); })) {
+      callbacks_(std::move(callbacks)),
+      restart_(loop.timer([this] { callbacks_.restart(); })) {
   auto file = SpareFile::read(state_, unread_);
   const std::string unknown = file ? "" : file.error();
   if (file) file_ = *std::move(file);
@@ -198,7 +198,7 @@ icd::Checked<void> Spare::enter_standby() {
   next.rest = {.code = spare::draw_code(host::random_bytes<spare::kCodeDigits>()),
                .since = now,
                .stamp = loop_.stamp_now(),
-               .told = asked_.is_time_set() ? std::optional(now) : std::nullopt};
+               .told = callbacks_.is_time_set() ? std::optional(now) : std::nullopt};
   next.rest_count = next.rest_count.value_or(0) + 1;
   if (auto kept = keep(next); !kept) return kept;
   goes_on_standby_ = true;
@@ -238,7 +238,7 @@ void Spare::seal(const SealCallback& done) {
   const auto refused = [&done](Status status, const std::string& why) { done(icd::refuse(status, why), ""); };
   if (!file_.rest || standby_.empty() || is_stuck())
     return refused(Status::Conflict, "this box is not on standby: only a box on standby can be exported");
-  auto content = asked_.content();
+  auto content = callbacks_.content();
   if (!content) return refused(Status::ServiceUnavailable, content.error());
   content->about.box = file_.box;
   content->about.at = file_.rest->since;
@@ -324,7 +324,7 @@ icd::Checked<void> Spare::take_over() {
   if (takes_over_) return {};
   if (!opened_) return icd::conflict("no export is open: import and open one first");
   spare::Content content = opened_->content;
-  if (!asked_.is_time_set()) content.about.told_at.reset();  // an unset time of day cannot be compared
+  if (!callbacks_.is_time_set()) content.about.told_at.reset();  // an unset time of day cannot be compared
   if (auto begun = takeover_.begin(spare::write(content)); !begun)
     return icd::refuse(Status::ServiceUnavailable, begun.error());
   takes_over_ = true;

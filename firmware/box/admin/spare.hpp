@@ -68,7 +68,7 @@ class Spare final : public api::Spare {
   /// `status_folder`: adit-spare's. `stuck`: why the box is a standby despite its file (unfinished takeover,
   /// unreadable settings), or "". `workers`: jobs of 0.1 s. `loop`, `workers` and `takeover` outlive this.
   Spare(loop::Loop& loop, loop::Workers& workers, Takeover& takeover, std::string state_folder,
-        const std::string& status_folder, const std::string& stuck, Callbacks asked);
+        const std::string& status_folder, const std::string& stuck, Callbacks callbacks);
 
   /// Why the box is a standby, or "".
   const std::string& standby() const { return standby_; }
@@ -110,7 +110,7 @@ class Spare final : public api::Spare {
   std::string state_;
   SpareStick stick_;
   std::string stuck_, unread_;
-  Callbacks asked_;
+  Callbacks callbacks_;
   loop::Source restart_;  // fires after the client has its answer
   SpareFile file_;
   std::string standby_;

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "host/log.hpp"
-#include "panel/held.hpp"
+#include "panel/reopened.hpp"
 
 namespace adit::box {
 

@@ -10,9 +10,9 @@
 #include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
 #include "panel/button.hpp"
-#include "panel/held.hpp"
 #include "panel/lines.hpp"
 #include "panel/painter.hpp"
+#include "panel/reopened.hpp"
 #include "panel/states.hpp"
 #include "settings/settings.hpp"
 

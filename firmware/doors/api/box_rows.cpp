@@ -395,7 +395,7 @@ constexpr Member kNetworkMembers[] = {
     member<&NetworkView::ports>("ports"),
     member<&NetworkView::last>("last")
         .as(codec::kTextOrNull)
-        .one_of(std::span(network::kEndedWords).subspan(1)),
+        .one_of(std::span(network::kOutcomeWords).subspan(1)),
     member<&NetworkView::last_why>("last_why"),
 };
 

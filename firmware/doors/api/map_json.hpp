@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "codec/row.hpp"
-#include "picture/covered.hpp"
+#include "picture/coverage.hpp"
 #include "picture/mosaic.hpp"
 #include "picture/palette.hpp"
 

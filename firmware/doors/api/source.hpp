@@ -11,7 +11,7 @@
 #include "api/scene.hpp"
 #include "icd/scoring.hpp"
 #include "icd/status.hpp"
-#include "picture/covered.hpp"
+#include "picture/coverage.hpp"
 #include "picture/mosaic.hpp"
 
 namespace adit::api {

@@ -10,7 +10,7 @@
 #include "codec/base64.hpp"
 #include "icd/natural_order.hpp"
 #include "icd/sentence.hpp"
-#include "picture/covered.hpp"
+#include "picture/coverage.hpp"
 #include "picture/palette.hpp"
 
 namespace adit::archive {

@@ -11,10 +11,10 @@
 #include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
 #include "panel/button.hpp"
-#include "panel/held.hpp"
 #include "panel/messages.hpp"
 #include "panel/painter.hpp"
 #include "panel/panel.hpp"
+#include "panel/reopened.hpp"
 
 namespace adit::panel {
 

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "loop/file_descriptor.hpp"
-#include "panel/held.hpp"
 #include "panel/messages.hpp"
+#include "panel/reopened.hpp"
 
 namespace adit::panel {
 namespace {

@@ -17,7 +17,7 @@
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"
 #include "loop/watchdog.hpp"
-#include "panel/held.hpp"
+#include "panel/reopened.hpp"
 #include "settings/written.hpp"
 
 namespace adit::gateway {

@@ -38,9 +38,9 @@ std::vector<std::uint8_t> der_of(std::string_view block) {
 
 }  // namespace
 
-static constexpr std::string_view kWhatWords[] = {"keep", "make", "take"};  // in the order of Command
+static constexpr std::string_view kCommandWords[] = {"keep", "make", "take"};  // in the order of Command
 static constexpr auto& words_of(CertificateRequest::Command /*of*/) {
-  return kWhatWords;
+  return kCommandWords;
 }
 
 std::string KeyAndChain::text() const {

@@ -95,12 +95,12 @@ struct Pending {
 };
 
 enum class ChangeOutcome : std::uint8_t { NotYet, Confirmed, Reverted };
-inline constexpr std::string_view kEndedWords[] = {"", "confirmed", "reverted"};  // by ChangeOutcome
+inline constexpr std::string_view kOutcomeWords[] = {"", "confirmed", "reverted"};  // by ChangeOutcome
 constexpr auto& words_of(ChangeOutcome /*of*/) {
-  return kEndedWords;
+  return kOutcomeWords;
 }
 constexpr std::string_view name_of(ChangeOutcome ended) {
-  return kEndedWords[static_cast<std::size_t>(ended)];
+  return kOutcomeWords[static_cast<std::size_t>(ended)];
 }
 
 struct Status {

@@ -82,9 +82,10 @@ std::expected<Medium, std::string> medium_for(std::span<const Medium> media, std
   return *best;
 }
 
-static constexpr std::string_view kWhatWords[] = {"write", "take"};  // in the order of StickRequest::Command
+static constexpr std::string_view kCommandWords[] = {"write",
+                                                     "take"};  // in the order of StickRequest::Command
 static constexpr auto& words_of(StickRequest::Command /*of*/) {
-  return kWhatWords;
+  return kCommandWords;
 }
 
 namespace {

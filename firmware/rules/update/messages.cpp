@@ -65,10 +65,10 @@ bool on_trial(const LastUpdate& last_update, const RunningSystem& running, const
          last_update.version == running.version;
 }
 
-static constexpr std::string_view kWhatWords[] = {"install", "stick", "restart", "back",
-                                                  "stay"};  // in the order of Request::Command
+static constexpr std::string_view kCommandWords[] = {"install", "stick", "restart", "back",
+                                                     "stay"};  // in the order of Request::Command
 static constexpr auto& words_of(Request::Command /*of*/) {
-  return kWhatWords;
+  return kCommandWords;
 }
 
 namespace {

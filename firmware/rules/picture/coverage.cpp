@@ -1,4 +1,4 @@
-#include "picture/covered.hpp"
+#include "picture/coverage.hpp"
 
 #include <algorithm>
 #include <memory>

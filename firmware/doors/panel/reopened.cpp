@@ -1,4 +1,4 @@
-#include "panel/held.hpp"
+#include "panel/reopened.hpp"
 
 #include <sys/epoll.h>
 #include <sys/timerfd.h>
